@@ -1,0 +1,53 @@
+// Point positions from corrected normals by global energy minimisation (A09 section 4.2; R07 section 4.2).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "neighborhoods.h"
+
+namespace curvature_lines {
+
+struct DenoisingOptions {
+	enum class Energy { SquareRoot, Squared };   // A09's sqrt of the norm, or its square
+	enum class Optimizer { LBFGSB, PolakRibiere }; // A09, R07
+	enum class Neighbors { SixSectors, Nearest };  // the two readings of A09's "K = 6 nearest"
+	Energy    energy     = Energy::SquareRoot;
+	Optimizer optimizer  = Optimizer::LBFGSB;
+	Neighbors neighbors  = Neighbors::SixSectors;
+	Index     iterations = 100;
+	double    delta      = 0.1; // smooths the square root at 0: (e^2 + delta^2)^(1/4), e = |n - s nhat|
+	double    maxMove    = 2.0; // trust box per coordinate, in median spacings
+};
+
+struct DenoisingResult {
+	Eigen::Matrix3Xd positions; // 3 x N
+	Index  iterations    = 0;
+	double initialEnergy = 0.0, finalEnergy = 0.0;
+	double rmsMove       = 0.0; // length
+};
+
+// Normals are held constant: pass the corrected ones in cloud.normals.
+DenoisingResult denoise(
+	const PointCloud&           cloud,
+	const NeighborSearch&       search,
+	const MinimumNeighborhoods& minimum,
+	const DenoisingOptions&     options  = {},
+	const Progress&             progress = {});
+
+// The energy and its analytic gradient, exposed so that tests can difference it. Degenerate triangles
+// (sine of the angle at p below 0.05 at the start) take no part; orientation signs s are those of `start`.
+class DenoisingEnergy {
+public:
+	DenoisingEnergy(
+		const PointCloud& start, const NeighborLists& neighbors, const DenoisingOptions& options);
+	// x: 3N stacked positions; gradient: resized to 3N. Returns E. Same result for any number of threads.
+	double operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
+
+private:
+	struct Triangle { Index p, q, r; double sign; };
+	const Eigen::Matrix3Xd m_normals;
+	std::vector<Triangle>  m_triangles;  // sorted by p
+	NeighborLists          m_incidence;  // point -> triangles that touch it, for a race-free gradient
+	DenoisingOptions       m_options;
+};
+
+} // namespace curvature_lines

@@ -1,0 +1,65 @@
+// The half-edge structure of an embedded graph: vertices with cyclically sorted half-edges, and its
+// face loops (A09 section 6; Marinov & Kobbelt 2004).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "point_cloud.h"
+
+namespace curvature_lines {
+
+// Polygons over shared vertices, counter-clockwise seen from outside.
+struct PolygonMesh {
+	Eigen::Matrix3Xd vertices, normals; // 3 x V
+	NeighborLists    faces;             // vertex loop of each face
+
+	Index vertexCount() const { return static_cast<Index>(vertices.cols()); }
+	Index faceCount() const { return faces.size(); }
+};
+
+// What a mesh is, counted; nothing is assumed.
+struct MeshTopology {
+	Index vertices = 0, edges = 0, faces = 0, triangles = 0, quads = 0, largestFace = 0;
+	Index boundaryEdges = 0, boundaryLoops = 0, nonmanifoldEdges = 0, nonmanifoldVertices = 0;
+	Index components = 0;
+	Index eulerCharacteristic = 0; // V - E + F over used vertices
+};
+MeshTopology topologyOf(const PolygonMesh& mesh);
+
+// A graph embedded in a surface. Half-edge 2e and 2e + 1 are the two sides of edge e.
+class HalfEdgeGraph {
+public:
+	struct Edge {
+		Index           from, to;
+		Eigen::Vector3d tangentFrom, tangentTo; // directions leaving each end along the edge
+	};
+
+	HalfEdgeGraph(Eigen::Matrix3Xd positions, Eigen::Matrix3Xd normals, std::vector<Edge> edges);
+
+	static Index twin(Index h) { return h ^ 1; }
+	Index origin(Index h) const { return h & 1 ? m_edges[h >> 1].to : m_edges[h >> 1].from; }
+	// Half-edges leaving v, counter-clockwise about its normal.
+	const std::vector<Index>& around(Index v) const { return m_around[v]; }
+
+	// Removes chains that end in a vertex of degree one, repeatedly.
+	void cutDanglingEdges();
+	// Joins the two edges of every vertex of degree two (kept[v] != 0 protects v).
+	void dissolveDegreeTwo(const std::vector<char>& kept = {});
+
+	// Arriving at v by h, a face goes on with the clockwise next of twin(h). Every live half-edge is in
+	// exactly one loop.
+	std::vector<std::vector<Index>> faceLoops() const;
+
+	const Eigen::Matrix3Xd& positions() const { return m_positions; }
+	const Eigen::Matrix3Xd& normals() const { return m_normals; }
+	bool alive(Index edge) const { return m_alive[edge] != 0; }
+	Index edgeCount() const { return static_cast<Index>(m_edges.size()); }
+	const Edge& edge(Index e) const { return m_edges[e]; }
+
+private:
+	Eigen::Matrix3Xd   m_positions, m_normals;
+	std::vector<Edge>  m_edges;
+	std::vector<char>  m_alive;
+	std::vector<std::vector<Index>> m_around;
+};
+
+} // namespace curvature_lines

@@ -1,0 +1,46 @@
+// Lines of curvature traced on the cloud in order of confidence (A09 section 5.1; R07 section 5).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surface_projection.h"
+#include "umbilics.h"
+#include "voronoi_cells.h"
+
+namespace curvature_lines {
+
+struct LineTracingOptions {
+	double epsilon        = 1e-5; // chord error, fraction of the bounding-box diagonal (A09 prints it as kappa)
+	Index  targetVertices = 0;    // > 0: epsilon is chosen so that about so many crossings result
+	double minSpacing     = 0.0;  // length; 0 = automatic, a multiple of the median point spacing
+	double maxSpacing     = 0.0;  // length; 0 = automatic
+	double tolerance      = 0.01; // tau of the adaptive step
+	ProjectionKind projection = ProjectionKind::Mixed;
+};
+
+// All lines of both families. Vertices of line l: [offsets[l], offsets[l + 1]), in order along the line;
+// a closed line's last vertex joins its first (not repeated).
+struct LineNetwork {
+	Eigen::Matrix3Xd      vertices, normals; // 3 x M
+	Eigen::VectorXd       curvature;         // M, principal curvature along the line
+	std::vector<Index>    offsets = {0};
+	std::vector<int>      family;            // per line, 1 (along d1) or 2
+	std::vector<char>     closed;            // per line
+	double                epsilon = 0.0;     // the one used
+
+	Index lines() const { return static_cast<Index>(family.size()); }
+};
+
+// Distance to keep from the next line of the same family: 2 sqrt(eps (2/|k| - eps)), the chord of sagitta
+// eps, clamped to [minSpacing, maxSpacing]. k is the curvature *across* the line. All in the same length unit.
+double lineSpacing(double k, double eps, double minSpacing, double maxSpacing);
+
+LineNetwork traceLines(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,     // directions as they should be followed (smoothed or not)
+	const MinimumNeighborhoods& minimum,
+	const UmbilicRegions&       umbilics,
+	const VoronoiCells&         cells,
+	const LineTracingOptions&   options  = {},
+	const Progress&             progress = {});
+
+} // namespace curvature_lines

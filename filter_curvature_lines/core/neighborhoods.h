@@ -1,0 +1,60 @@
+// Nearest neighbours and the six-slice minimum neighbourhood with its boundary flag
+// (A09 section 3 and fig. 4a; R07 fig. 6a).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "progress.h"
+
+namespace curvature_lines {
+
+// A kd-tree over fixed positions (nanoflann behind it). The positions must outlive the tree.
+class NeighborSearch {
+public:
+	explicit NeighborSearch(const Eigen::Matrix3Xd& positions);
+	~NeighborSearch();
+	NeighborSearch(NeighborSearch&&) noexcept;
+	NeighborSearch& operator=(NeighborSearch&&) noexcept;
+
+	// Indices of the k nearest points, by increasing distance, ties by index. Fewer if the cloud is smaller.
+	std::vector<Index> nearest(const Eigen::Vector3d& query, Index k) const;
+	// All points within radius, by increasing distance, ties by index.
+	std::vector<Index> within(const Eigen::Vector3d& query, double radius) const;
+
+private:
+	struct Tree;
+	std::unique_ptr<Tree> m_tree;
+};
+
+struct MinimumNeighborhoodOptions {
+	// A slice is empty when its closest projected point is farther than this many median spacings.
+	double boundaryThreshold = 2.5;
+	// Candidates looked at per point; those whose normal opposes the point's are on another sheet.
+	Index candidates = 40;
+};
+
+struct MinimumNeighborhoods {
+	NeighborLists           neighbors;   // up to six per point, one per 60 degree slice of the tangent plane
+	std::vector<double>     spacing;     // h_i: mean 3-D distance to them (unit-frame length)
+	std::vector<int>        emptySlices; // largest number of *contiguous* empty slices, 0..6
+	std::vector<PointStatus> status;     // Ok, Boundary (>= 2 contiguous), Isolated (>= 4), TooFewNeighbors
+	double                  medianSpacing = 0.0;
+};
+
+MinimumNeighborhoods minimumNeighborhoods(
+	const PointCloud&                 cloud,
+	const NeighborSearch&             search,
+	const MinimumNeighborhoodOptions& options  = {},
+	const Progress&                   progress = {});
+
+// Right-handed orthonormal tangent frame (u, v, n) at a unit normal; a pure function of n, continuous
+// except at one pole, so that the same normal always gives the same frame.
+struct TangentFrame {
+	Eigen::Vector3d u, v, n;
+	explicit TangentFrame(const Eigen::Vector3d& normal);
+	Eigen::Vector2d toPlane(const Eigen::Vector3d& d) const { return {d.dot(u), d.dot(v)}; }
+	Eigen::Vector3d toSpace(const Eigen::Vector2d& d) const { return d.x() * u + d.y() * v; }
+};
+
+} // namespace curvature_lines

@@ -1,0 +1,40 @@
+// Outlier rejection by votes between operating regions (A09 section 4.1), and by the height residual
+// that a point has on its voters' fitted surfaces, which also sees outliers with plausible normals.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "robust_curvature.h"
+
+namespace curvature_lines {
+
+struct OutlierOptions {
+	enum class Mode { Robust, Paper };
+	Mode   mode          = Mode::Robust;
+	double sensitivity   = 3.5; // Robust: height residuals above this many noise units are votes against
+	double voteThreshold = 0.5; // flagged when more than this share of the votes is against (A09: 1/2)
+	Index  rounds        = 3;   // re-estimation after each removal, at most
+	MinimumNeighborhoodOptions neighborhood;
+	RobustCurvatureOptions     curvature;
+};
+
+struct OutlierResult {
+	std::vector<char>   outlier;  // N, 1 = rejected
+	std::vector<double> score;    // N, share of votes against, 0..1; 1 for isolated points
+	Index               isolated = 0; // rejected because nothing surrounds them
+	Index               roundsUsed = 0;
+	double              noise = 0.0;  // robust standard deviation of height residuals (length)
+};
+
+// The published vote for one given curvature field, one round: a point is flagged when more than
+// voteThreshold of its votes are against, or when it is Isolated. W_a[b] > 0 and W_b[a] = 0 is b's vote
+// against a; both > 0 is a vote for a (R07 prints the opposite by a copy error).
+OutlierResult voteOutliers(
+	const CurvatureField& field,
+	double                voteThreshold);
+
+OutlierResult rejectOutliers(
+	const PointCloud&     cloud,
+	const OutlierOptions& options  = {},
+	const Progress&       progress = {});
+
+} // namespace curvature_lines

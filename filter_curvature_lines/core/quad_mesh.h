@@ -1,0 +1,33 @@
+// The curvature-aligned quad-dominant mesh: faces between the lines of curvature (A09 section 6).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "half_edge_mesh.h"
+#include "line_intersections.h"
+
+namespace curvature_lines {
+
+struct QuadMeshOptions {
+	bool triangulate  = false; // split every polygon into triangles
+	bool splitConcave = true;  // cut non-quads with a reflex corner into convex pieces (R07)
+	bool closeHoles   = false; // fill boundary loops that are small against the mesh
+};
+
+struct QuadMeshResult {
+	PolygonMesh  mesh;
+	MeshTopology topology;
+	Index crossings     = 0;
+	Index discardedLoops = 0; // loops around holes and rims
+	Index repairedCrossings = 0; // crossings found only when a face turned out not to be a disk
+};
+
+// Two-manifold with boundary by construction: each half-edge bounds at most one face, no two edges join
+// the same vertices, no face visits a vertex twice, and vertices where several fans meet are split.
+QuadMeshResult buildQuadMesh(
+	const PointCloud&        cloud,
+	const VoronoiCells&      cells,
+	const LineNetwork&       lines,
+	const QuadMeshOptions&   options  = {},
+	const Progress&          progress = {});
+
+} // namespace curvature_lines

@@ -1,0 +1,33 @@
+// Projection of a free point onto the surface the cloud implies, with interpolated normal and
+// curvature tensor (A09 section 5.1 steps 1-3; R07 section 5; LOP: Lipman et al. 2007).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "robust_curvature.h"
+
+namespace curvature_lines {
+
+enum class ProjectionKind {
+	Mixed,           // Hermite mean of point average and tangent planes: their errors +-k s^2/2 cancel
+	LocallyOptimal,  // A09: LOP, 5 iterations, normal component only (LOP alone slides tangentially)
+	WeightedAverage, // R07
+};
+
+struct SurfaceSample {
+	Eigen::Vector3d position, normal;
+	Eigen::Vector3d d1, d2;  // unit principal directions, d2 = n x d1; sign arbitrary
+	double k1 = 0.0, k2 = 0.0;
+	Index  closest = -1;     // the cloud point whose statistical weights were used (given by the caller)
+};
+
+// `closest`: the cloud point nearest to `position` (its Voronoi cell). The support are the points with
+// positive statistical weight there, and itself; opposing normals are left out. Where the support is
+// empty the closest point's own tangent plane serves. Never returns NaN.
+SurfaceSample projectToSurface(
+	const PointCloud&      cloud,
+	const CurvatureField&  field,
+	const Eigen::Vector3d& position,
+	Index                  closest,
+	ProjectionKind         kind);
+
+} // namespace curvature_lines

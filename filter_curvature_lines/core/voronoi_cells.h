@@ -1,0 +1,36 @@
+// Voronoi cells of the cloud as the dual of CGAL's exact 3-D Delaunay triangulation (A09 section 5.1):
+// which cell a point lies in, and where a segment passes from cell to cell.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "progress.h"
+
+namespace curvature_lines {
+
+class VoronoiCells {
+public:
+	// One wall between two cells, crossed by a segment at parameter t in (0, 1].
+	struct Crossing {
+		double t;
+		Index  from, to;
+	};
+
+	// Only neighbours are kept. Throws InputError when the points span less than a plane.
+	explicit VoronoiCells(const Eigen::Matrix3Xd& sites, const Progress& progress = {});
+
+	Index                size() const { return m_neighbors.size(); }
+	NeighborLists::Row   neighbors(Index site) const { return m_neighbors[site]; } // Delaunay, by index
+	const Eigen::Vector3d site(Index i) const { return m_sites.col(i); }
+
+	// The cell of `point`, by greedy descent from `start` (exact on a Delaunay graph; ties to the lower index).
+	Index locate(const Eigen::Vector3d& point, Index start) const;
+
+	// Walls crossed on the way from a (in cell `start`) to b, by increasing t. Ends in the cell of b.
+	std::vector<Crossing> walk(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Index start) const;
+
+private:
+	Eigen::Matrix3Xd m_sites;
+	NeighborLists    m_neighbors;
+};
+
+} // namespace curvature_lines

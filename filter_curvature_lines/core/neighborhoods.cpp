@@ -1,0 +1,297 @@
+// Neighbour search and minimum neighbourhoods (A09 section 3, fig. 4a; R07 fig. 6a).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "neighborhoods.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <nanoflann.hpp>
+
+namespace curvature_lines {
+
+namespace {
+
+using DistanceIndex = std::pair<double, Index>;
+
+struct PositionsAdaptor {
+	const Eigen::Matrix3Xd& positions;
+
+	std::size_t kdtree_get_point_count() const { return positions.cols(); }
+	double      kdtree_get_pt(std::size_t i, std::size_t c) const { return positions(c, i); }
+	template<class Box>
+	bool kdtree_get_bbox(Box&) const
+	{
+		return false;
+	}
+};
+
+// The tree accumulates its lower bounds in floating point and compares strictly; the margin keeps points
+// that tie with the limit, so that the exact (distance, index) order below decides and not the tree's.
+constexpr double tieMargin = 1.0 + 1e-12;
+
+class NearestSet {
+public:
+	using DistanceType = double;
+	NearestSet(std::vector<DistanceIndex>& heap, std::size_t capacity) :
+			m_heap(heap), m_capacity(capacity)
+	{
+		m_heap.clear();
+	}
+	std::size_t size() const { return m_heap.size(); }
+	bool        full() const { return m_heap.size() == m_capacity; }
+	void        sort() { std::sort_heap(m_heap.begin(), m_heap.end()); }
+	double      worstDist() const
+	{
+		return full() ? m_heap.front().first * tieMargin + std::numeric_limits<double>::min() :
+						std::numeric_limits<double>::max();
+	}
+	bool addPoint(double distance, Index index)
+	{
+		const DistanceIndex candidate(distance, index);
+		if (full()) {
+			if (!(candidate < m_heap.front()))
+				return true;
+			std::pop_heap(m_heap.begin(), m_heap.end());
+			m_heap.back() = candidate;
+		}
+		else {
+			m_heap.push_back(candidate);
+		}
+		std::push_heap(m_heap.begin(), m_heap.end());
+		return true;
+	}
+
+private:
+	std::vector<DistanceIndex>& m_heap;
+	std::size_t                 m_capacity;
+};
+
+class BallSet {
+public:
+	using DistanceType = double;
+	BallSet(std::vector<DistanceIndex>& found, double squaredRadius) :
+			m_found(found), m_squaredRadius(squaredRadius)
+	{
+		m_found.clear();
+	}
+	std::size_t size() const { return m_found.size(); }
+	bool        full() const { return true; }
+	void        sort() {}
+	double      worstDist() const
+	{
+		return m_squaredRadius * tieMargin + std::numeric_limits<double>::min();
+	}
+	bool addPoint(double distance, Index index)
+	{
+		if (distance <= m_squaredRadius)
+			m_found.emplace_back(distance, index);
+		return true;
+	}
+
+private:
+	std::vector<DistanceIndex>& m_found;
+	double                      m_squaredRadius;
+};
+
+std::vector<Index> sortedIndices(std::vector<DistanceIndex>& found)
+{
+	std::sort(found.begin(), found.end());
+	std::vector<Index> indices(found.size());
+	std::transform(found.begin(), found.end(), indices.begin(), [](const auto& f) {
+		return f.second;
+	});
+	return indices;
+}
+
+constexpr int sliceCount = 6;
+
+int sliceOf(const Eigen::Vector2d& d)
+{
+	const double turn = std::atan2(d.y(), d.x()) / (2.0 * EIGEN_PI); // -1/2 .. 1/2
+	const int    s    = static_cast<int>(std::floor((turn < 0.0 ? turn + 1.0 : turn) * sliceCount));
+	return std::min(s, sliceCount - 1);
+}
+
+// The projected-closest candidate of each slice, -1 where there is none within `reach` (3-D).
+std::array<Index, sliceCount> closestPerSlice(
+	const PointCloud& cloud, Index i, const Index* first, const Index* last, double reach)
+{
+	const TangentFrame             frame(cloud.normals.col(i));
+	std::array<Index, sliceCount>  slots;
+	std::array<double, sliceCount> closest;
+	slots.fill(-1);
+	closest.fill(std::numeric_limits<double>::infinity());
+	for (const Index* j = first; j != last; ++j) {
+		const Eigen::Vector3d d = cloud.positions.col(*j) - cloud.positions.col(i);
+		if (d.norm() > reach || cloud.normals.col(i).dot(cloud.normals.col(*j)) <= 0.0)
+			continue;
+		const Eigen::Vector2d projected = frame.toPlane(d);
+		const double          distance  = projected.squaredNorm();
+		const int             slice     = sliceOf(projected);
+		if (distance < closest[slice]) { // candidates come by (distance, index): ties are settled
+			closest[slice] = distance;
+			slots[slice]   = *j;
+		}
+	}
+	return slots;
+}
+
+double meanDistance(const PointCloud& cloud, Index i, const std::array<Index, sliceCount>& slots)
+{
+	double sum   = 0.0;
+	int    count = 0;
+	for (const Index j : slots) {
+		if (j < 0)
+			continue;
+		sum += (cloud.positions.col(j) - cloud.positions.col(i)).norm();
+		++count;
+	}
+	return count > 0 ? sum / count : 0.0;
+}
+
+int longestEmptyRun(const std::array<Index, sliceCount>& slots)
+{
+	int longest = 0, run = 0;
+	for (int s = 0; s < 2 * sliceCount; ++s) { // twice around: the slices are cyclic
+		run     = slots[s % sliceCount] < 0 ? run + 1 : 0;
+		longest = std::max(longest, run);
+	}
+	return std::min(longest, sliceCount);
+}
+
+double medianInPlace(std::vector<double>& values)
+{
+	if (values.empty())
+		return 0.0;
+	const auto middle = values.begin() + values.size() / 2;
+	std::nth_element(values.begin(), middle, values.end());
+	return *middle;
+}
+
+double positiveMedian(const std::vector<double>& values)
+{
+	std::vector<double> positive;
+	for (const double v : values)
+		if (v > 0.0)
+			positive.push_back(v);
+	return medianInPlace(positive);
+}
+
+} // namespace
+
+struct NeighborSearch::Tree {
+	using Metric = nanoflann::L2_Simple_Adaptor<double, PositionsAdaptor, double, Index>;
+	using Index3 = nanoflann::KDTreeSingleIndexAdaptor<Metric, PositionsAdaptor, 3, Index>;
+
+	explicit Tree(const Eigen::Matrix3Xd& positions) :
+			adaptor {positions}, index(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16))
+	{
+		index.buildIndex();
+	}
+	PositionsAdaptor adaptor;
+	Index3           index;
+};
+
+NeighborSearch::NeighborSearch(const Eigen::Matrix3Xd& positions) :
+		m_tree(std::make_unique<Tree>(positions))
+{
+}
+
+NeighborSearch::~NeighborSearch()                                    = default;
+NeighborSearch::NeighborSearch(NeighborSearch&&) noexcept            = default;
+NeighborSearch& NeighborSearch::operator=(NeighborSearch&&) noexcept = default;
+
+std::vector<Index> NeighborSearch::nearest(const Eigen::Vector3d& query, Index k) const
+{
+	if (k <= 0 || m_tree->adaptor.positions.cols() == 0)
+		return {};
+	thread_local std::vector<DistanceIndex> found;
+	NearestSet                              set(found, k);
+	m_tree->index.radiusSearchCustomCallback(query.data(), set);
+	return sortedIndices(found);
+}
+
+std::vector<Index> NeighborSearch::within(const Eigen::Vector3d& query, double radius) const
+{
+	if (!(radius >= 0.0) || m_tree->adaptor.positions.cols() == 0)
+		return {};
+	thread_local std::vector<DistanceIndex> found;
+	BallSet                                 set(found, radius * radius);
+	m_tree->index.radiusSearchCustomCallback(query.data(), set);
+	return sortedIndices(found);
+}
+
+MinimumNeighborhoods minimumNeighborhoods(
+	const PointCloud&                 cloud,
+	const NeighborSearch&             search,
+	const MinimumNeighborhoodOptions& options,
+	const Progress&                   progress)
+{
+	const Index         n       = cloud.size();
+	const Index         rowSize = std::max<Index>(0, std::min<Index>(options.candidates, n - 1));
+	std::vector<Index>  candidates(std::size_t(n) * rowSize);
+	std::vector<double> freeSpacing(n); // without a threshold on the distance
+	const auto          rowOf = [&](Index i) { return candidates.data() + std::size_t(i) * rowSize; };
+
+	parallelFor(n, progress.sub(0.0, 0.7, "Finding neighbors"), [&](Index i) {
+		Index* row = rowOf(i);
+		Index* end = row;
+		for (const Index j : search.nearest(cloud.positions.col(i), rowSize + 1))
+			if (j != i && end != row + rowSize)
+				*end++ = j;
+		const auto slots = closestPerSlice(
+			cloud, i, row, end, std::numeric_limits<double>::infinity());
+		freeSpacing[i] = meanDistance(cloud, i, slots);
+	});
+
+	MinimumNeighborhoods result;
+	const double         median = positiveMedian(freeSpacing);
+	std::vector<std::vector<Index>> rows(n);
+	result.spacing.resize(n);
+	result.emptySlices.resize(n);
+	result.status.resize(n);
+	parallelFor(n, progress.sub(0.7, 1.0, "Minimum neighborhoods"), [&](Index i) {
+		const Index* row = rowOf(i);
+		thread_local std::vector<double> local;
+		local.clear();
+		for (Index c = 0; c < rowSize; ++c)
+			local.push_back(freeSpacing[row[c]]);
+		const double scale = std::max(median, medianInPlace(local));
+		const auto   slots =
+			closestPerSlice(cloud, i, row, row + rowSize, options.boundaryThreshold * scale);
+		for (const Index j : slots)
+			if (j >= 0)
+				rows[i].push_back(j);
+		const double spacing  = meanDistance(cloud, i, slots);
+		const int    run      = longestEmptyRun(slots);
+		result.spacing[i]     = spacing > 0.0 ? spacing : (scale > 0.0 ? scale : 1.0);
+		result.emptySlices[i] = run;
+		result.status[i]      = run >= 4              ? PointStatus::Isolated :
+								rows[i].size() < 3 ? PointStatus::TooFewNeighbors :
+								run >= 2              ? PointStatus::Boundary :
+														PointStatus::Ok;
+	});
+	result.neighbors     = NeighborLists::fromRows(rows);
+	result.medianSpacing = positiveMedian(result.spacing);
+	return result;
+}
+
+TangentFrame::TangentFrame(const Eigen::Vector3d& normal) : n(normal)
+{
+	// Rotates e_z onto n about their common normal (Frisvad 2012); the pole is -e_z. Near it 1 + n.z
+	// cancels, (n.x^2 + n.y^2) / (1 - n.z) is the same number without the loss.
+	const double inPlane = n.x() * n.x() + n.y() * n.y();
+	const double onePlus = n.z() > 0.0 ? 1.0 + n.z() : inPlane / (1.0 - n.z());
+	if (onePlus < std::numeric_limits<double>::min()) {
+		u = Eigen::Vector3d::UnitX();
+		v = -Eigen::Vector3d::UnitY();
+		return;
+	}
+	const double a = 1.0 / onePlus;
+	u = {1.0 - n.x() * n.x() * a, -n.x() * n.y() * a, -n.x()};
+	v = {-n.x() * n.y() * a, 1.0 - n.y() * n.y() * a, -n.y()};
+}
+
+} // namespace curvature_lines

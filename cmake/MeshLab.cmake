@@ -2,7 +2,8 @@
 # The target meshlab-common carries all three; MESHLAB_VERSION and MESHLAB_SCALAR belong to each plugin.
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-require_package(Qt5 qtbase5-dev COMPONENTS Widgets)
+require_package(Qt5 "qtbase5-dev libqt5opengl5-dev" COMPONENTS Widgets OpenGL Xml)
+require_headers(GLEW GL/glew.h libglew-dev)
 
 # 1. Headers: a folder of the user's, else what scripts/fetch_meshlab_sources.sh finds.
 set(MESHLAB_SOURCE_DIR "" CACHE PATH "MeshLab 2025.07 sources with vcglib; fetched when empty")
@@ -44,6 +45,6 @@ endif()
 add_library(meshlab-common SHARED IMPORTED)
 set_target_properties(meshlab-common PROPERTIES IMPORTED_LOCATION ${MESHLAB_COMMON_LIBRARY})
 target_include_directories(meshlab-common INTERFACE ${meshlab_sources}/src ${meshlab_sources}/src/vcglib)
-target_link_libraries(meshlab-common INTERFACE Qt5::Widgets Eigen3::Eigen)
+target_link_libraries(meshlab-common INTERFACE Qt5::Widgets Qt5::OpenGL Qt5::Xml Eigen3::Eigen GLEW)
 # The wheel's own Qt and the rest of its libraries are the loading process's business.
-target_link_options(meshlab-common INTERFACE -Wl,--allow-shlib-undefined)
+target_link_options(meshlab-common INTERFACE -Wl,--allow-shlib-undefined -Wl,--as-needed)

@@ -14,6 +14,7 @@ struct LineTracingOptions {
 	double minSpacing     = 0.0;  // length; 0 = automatic, a multiple of the median point spacing
 	double maxSpacing     = 0.0;  // length; 0 = automatic
 	double tolerance      = 0.01; // tau of the adaptive step
+	double stopFactor     = 1.0;  // lines start at distance d from the next of their family and end below this times d
 	ProjectionKind projection = ProjectionKind::Mixed;
 };
 

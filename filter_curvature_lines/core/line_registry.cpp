@@ -1,0 +1,162 @@
+// Flow segments registered per Voronoi cell and the proximity queries over them (A09 section 5.1).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "line_registry.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double SameSheetCosine = 0.5;
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// The search must be able to come back the way it went.
+NeighborLists symmetric(const NeighborLists& lists)
+{
+	std::vector<std::vector<Index>> rows(lists.size());
+	for (Index i = 0; i < lists.size(); ++i)
+		for (Index j : lists[i]) {
+			rows[i].push_back(j);
+			rows[j].push_back(i);
+		}
+	for (std::vector<Index>& row : rows) {
+		std::sort(row.begin(), row.end());
+		row.erase(std::unique(row.begin(), row.end()), row.end());
+	}
+	return NeighborLists::fromRows(rows);
+}
+
+double distance2ToSegment(const Vector3d& x, const Vector3d& a, const Vector3d& b)
+{
+	const Vector3d ab      = b - a;
+	const double   length2 = ab.squaredNorm();
+	const double   t       = length2 > 0.0 ? std::clamp((x - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
+	return (a + t * ab - x).squaredNorm();
+}
+
+double area(const Vector2d& a, const Vector2d& b, const Vector2d& c)
+{
+	return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+}
+
+// Half-open at both ends, so that a crossing at a shared vertex of two pieces counts once.
+bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d)
+{
+	return (area(a, b, c) > 0.0) != (area(a, b, d) > 0.0) &&
+		   (area(c, d, a) > 0.0) != (area(c, d, b) > 0.0);
+}
+
+} // namespace
+
+LineRegistry::LineRegistry(const PointCloud& cloud, const MinimumNeighborhoods& minimum) :
+		m_positions(cloud.positions),
+		m_spacing(minimum.spacing),
+		m_neighbors(symmetric(minimum.neighbors)),
+		m_visited(cloud.size(), 0)
+{
+	m_first.fill(std::vector<Index>(cloud.size(), -1));
+}
+
+void LineRegistry::enter(int family, Index cell, Index segment)
+{
+	m_entries[family - 1].push_back({segment, m_first[family - 1][cell]});
+	m_first[family - 1][cell] = static_cast<Index>(m_entries[family - 1].size()) - 1;
+}
+
+void LineRegistry::add(int family, const FlowSegment& segment)
+{
+	const Index id = size(family);
+	m_segments[family - 1].push_back(segment);
+	enter(family, segment.fromCell, id);
+	if (segment.toCell != segment.fromCell)
+		enter(family, segment.toCell, id);
+}
+
+void LineRegistry::truncate(int family, Index size)
+{
+	std::vector<FlowSegment>& segments = m_segments[family - 1];
+	const auto                leave    = [&](Index cell) {
+        m_first[family - 1][cell] = m_entries[family - 1].back().next;
+        m_entries[family - 1].pop_back();
+	};
+	while (static_cast<Index>(segments.size()) > size) {
+		const FlowSegment& last = segments.back();
+		if (last.toCell != last.fromCell)
+			leave(last.toCell);
+		leave(last.fromCell);
+		segments.pop_back();
+	}
+}
+
+bool LineRegistry::blocks(const FlowSegment& segment, const ProximityQuery& query) const
+{
+	const bool own = segment.line == query.line;
+	if (own && (segment.arc <= query.ownFrom || segment.arc >= query.ownTo))
+		return false;
+	const double radius = own ? query.ownRadius : query.radius;
+	return segment.normal.dot(query.normal) > SameSheetCosine &&
+		   distance2ToSegment(query.position, segment.from, segment.to) < radius * radius;
+}
+
+bool LineRegistry::occupied(int family, const ProximityQuery& query)
+{
+	const std::vector<Index>&       first    = m_first[family - 1];
+	const std::vector<Entry>&       entries  = m_entries[family - 1];
+	const std::vector<FlowSegment>& segments = m_segments[family - 1];
+	if (++m_query == 0) { // the stamps have run round
+		std::fill(m_visited.begin(), m_visited.end(), 0u);
+		m_query = 1;
+	}
+	m_queue.assign(1, query.cell);
+	m_visited[query.cell] = m_query;
+	for (std::size_t k = 0; k < m_queue.size(); ++k) {
+		for (Index e = first[m_queue[k]]; e >= 0; e = entries[e].next)
+			if (blocks(segments[entries[e].segment], query))
+				return true;
+		for (Index j : m_neighbors[m_queue[k]]) {
+			if (m_visited[j] == m_query)
+				continue;
+			m_visited[j] = m_query;
+			// A point of a segment is about a spacing at most from the site it is registered with.
+			const double reach = query.radius + m_spacing[j];
+			if ((m_positions.col(j) - query.position).squaredNorm() <= reach * reach)
+				m_queue.push_back(j);
+		}
+	}
+	return false;
+}
+
+Index LineRegistry::countCrossings(const Matrix3Xd& normals) const
+{
+	Index count = 0;
+	for (Index cell = 0; cell < static_cast<Index>(m_first[0].size()); ++cell) {
+		if (m_first[0][cell] < 0 || m_first[1][cell] < 0)
+			continue;
+		const TangentFrame frame(normals.col(cell));
+		const auto         flat = [&](const Vector3d& x) {
+			return frame.toPlane(x - m_positions.col(cell));
+		};
+		for (Index e = m_first[0][cell]; e >= 0; e = m_entries[0][e].next) {
+			const FlowSegment& s = m_segments[0][m_entries[0][e].segment];
+			const Vector2d     a = flat(s.from), b = flat(s.to);
+			for (Index f = m_first[1][cell]; f >= 0; f = m_entries[1][f].next) {
+				const FlowSegment& t = m_segments[1][m_entries[1][f].segment];
+				// Two segments that share two cells are looked at in the first only.
+				if (cell != s.fromCell && (t.fromCell == s.fromCell || t.toCell == s.fromCell))
+					continue;
+				if (cross(a, b, flat(t.from), flat(t.to)))
+					++count;
+			}
+		}
+	}
+	return count;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,66 @@
+// Flow segments registered with the cloud points they pass, and the proximity queries of the tracing: a
+// breadth-first search over the minimum neighbourhoods (A09 section 5.1), which stays on its own sheet.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "neighborhoods.h"
+
+namespace curvature_lines {
+
+// One piece of a line between two flow points, each in the Voronoi cell of a cloud point.
+struct FlowSegment {
+	Eigen::Vector3d from, to, normal;
+	Index           fromCell, toCell;
+	Index           line;
+	double          arc; // arc length of its middle, measured from the seed of the line
+};
+
+// Is there a line within `radius`? Own segments count only where their arc lies in (ownFrom, ownTo), and
+// within ownRadius.
+struct ProximityQuery {
+	Eigen::Vector3d position, normal;
+	Index           cell; // of `position`
+	double          radius;
+	Index           line      = -1;
+	double          ownRadius = 0.0, ownFrom = 0.0, ownTo = 0.0;
+};
+
+class LineRegistry {
+public:
+	LineRegistry(const PointCloud& cloud, const MinimumNeighborhoods& minimum);
+
+	// Families are 1 and 2 everywhere.
+	void  add(int family, const FlowSegment& segment);
+	Index size(int family) const { return static_cast<Index>(m_segments[family - 1].size()); }
+	void  truncate(int family, Index size); // takes back the segments added last
+
+	// Distances are to segments, not samples; segments whose normal is more than 60 degrees off are on
+	// another sheet or beyond a fold. Uses scratch of its own: one query at a time.
+	bool occupied(int family, const ProximityQuery& query);
+
+	// Crossings of the two families, counted segment by segment in the tangent plane of the cell they
+	// share. An estimate: crossings where they share none are missed.
+	Index countCrossings(const Eigen::Matrix3Xd& normals) const;
+
+private:
+	struct Entry {
+		Index segment, next;
+	};
+
+	bool blocks(const FlowSegment& segment, const ProximityQuery& query) const;
+	void enter(int family, Index cell, Index segment);
+
+	const Eigen::Matrix3Xd&                 m_positions;
+	const std::vector<double>&              m_spacing;
+	NeighborLists                           m_neighbors; // minimum neighbourhoods, made symmetric
+	std::array<std::vector<FlowSegment>, 2> m_segments;
+	std::array<std::vector<Entry>, 2>       m_entries; // chained per cell, newest first
+	std::array<std::vector<Index>, 2>       m_first;   // N: newest entry of a cell, -1 if none
+	std::vector<std::uint32_t>              m_visited; // N: the query that last came by
+	std::uint32_t                           m_query = 0;
+	std::vector<Index>                      m_queue;
+};
+
+} // namespace curvature_lines

@@ -1,0 +1,85 @@
+// The distance between lines of curvature (A09 section 5.1) and the epsilon for a wanted number of crossings.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "line_spacing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cells apart
+constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
+constexpr double AutomaticMax = 0.1; // bounding-box diagonals
+// Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
+// slices' neighbours is 1.22 / sqrt(density).
+constexpr double ShareOfSpacing = 0.67;
+// Lines end up between d and 2 d apart: realised distance over d, measured.
+constexpr double RealisedDistance = 1.3;
+
+std::array<std::vector<double>, 2> distances(
+	const CurvatureField& field, double epsilon, double minSpacing, double maxSpacing)
+{
+	std::array<std::vector<double>, 2> result;
+	result[0].resize(field.size());
+	result[1].resize(field.size());
+	for (Index i = 0; i < field.size(); ++i) {
+		result[0][i] = lineSpacing(field.k2[i], epsilon, minSpacing, maxSpacing);
+		result[1][i] = lineSpacing(field.k1[i], epsilon, minSpacing, maxSpacing);
+	}
+	return result;
+}
+
+// Two families at distances c d1 and c d2 cross once in every c d1 by c d2 of surface.
+double predictedCrossings(
+	const MinimumNeighborhoods& minimum, const std::array<std::vector<double>, 2>& d)
+{
+	double sum = 0.0;
+	for (std::size_t i = 0; i < d[0].size(); ++i) {
+		const double h = minimum.spacing[i];
+		sum += ShareOfSpacing * h * h / (RealisedDistance * RealisedDistance * d[0][i] * d[1][i]);
+	}
+	return sum;
+}
+
+} // namespace
+
+double lineSpacing(double k, double eps, double minSpacing, double maxSpacing)
+{
+	const double radius = 1.0 / std::max(std::abs(k), 1e-300);
+	const double e      = std::min(eps, radius);
+	return std::clamp(2.0 * std::sqrt(e * (2.0 * radius - e)), minSpacing, maxSpacing);
+}
+
+LineSpacing chooseLineSpacing(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	const LineTracingOptions&   options,
+	double                      crossings)
+{
+	const Eigen::Vector3d extent =
+		cloud.positions.rowwise().maxCoeff() - cloud.positions.rowwise().minCoeff();
+	const double diagonal = extent.norm(), median = minimum.medianSpacing;
+	double least = options.minSpacing > 0.0 ? options.minSpacing : AutomaticMin * median;
+	least        = std::max(least, SmallestMin * median);
+	double most  = options.maxSpacing > 0.0 ? options.maxSpacing : AutomaticMax * diagonal;
+	most         = std::max(most, least);
+
+	LineSpacing result;
+	result.epsilon = options.epsilon * diagonal;
+	const auto at  = [&](double epsilon) { return distances(field, epsilon, least, most); };
+	if (crossings > 0.0) {
+		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);
+		for (int k = 0; k < 50; ++k) {
+			const double middle = 0.5 * (low + high);
+			(predictedCrossings(minimum, at(std::exp(middle))) > crossings ? low : high) = middle;
+		}
+		result.epsilon = std::exp(0.5 * (low + high));
+	}
+	result.distance = at(result.epsilon);
+	return result;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,418 @@
+// Lines of curvature traced on the cloud in order of confidence (A09 section 5.1; R07 section 5).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "line_tracing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+#include "line_registry.h"
+#include "line_spacing.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
+constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
+constexpr double CloudReach      = 1.5;         // local spacings from the closest point
+constexpr double RimMargin       = 0.3;         // local spacings beyond a boundary point
+constexpr double MaxLength       = 10.0;        // diagonals
+constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
+constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in d
+constexpr double ClosingOffset   = 0.6;   // a start ahead with less sideways offset closes the line, in d
+constexpr double ClosingSpread   = 12.0;  // the offset is spread over so many times its length
+constexpr Index  ReportEvery     = 1024;
+
+struct FlowPoint {
+	Vector3d position, normal, direction; // direction of travel
+	double   curvature = 0.0;             // along the line
+	Index    cell      = -1;
+	double   arc       = 0.0;
+};
+
+class Tracer {
+public:
+	Tracer(
+		const PointCloud&           cloud,
+		const CurvatureField&       field,
+		const MinimumNeighborhoods& minimum,
+		const UmbilicRegions&       umbilics,
+		const VoronoiCells&         cells,
+		const LineTracingOptions&   options,
+		const LineSpacing&          spacing);
+
+	LineNetwork run(const Progress& progress);
+	Index       countCrossings() const { return m_registry.countCrossings(m_cloud.normals); }
+
+private:
+	using Points = std::vector<FlowPoint>;
+
+	bool               isSeed(Index i) const;
+	std::vector<Index> seedsByConfidence() const;
+	void               traceThrough(Index seed, const Progress& progress);
+	bool               traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
+	bool               advance(const FlowPoint& from, FlowPoint& to) const;
+	bool     sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const;
+	Vector3d directionOf(const SurfaceSample& sample, Index cell) const;
+	bool     leftCloud(const FlowPoint& point) const;
+	bool     endsAtUmbilic(Index cell) const;
+	bool     occupied(const FlowPoint& point, bool approachesStart);
+	void     registerSegment(const FlowPoint& from, const FlowPoint& to);
+	void     closeUp(const FlowPoint& start, Points& half);
+	void     append(const Points& line, bool closed);
+
+	Index  currentLine() const { return static_cast<Index>(m_network.family.size()); }
+	double distance(Index cell) const { return m_spacing.distance[m_family - 1][cell]; }
+
+	const PointCloud&           m_cloud;
+	const CurvatureField&       m_field;
+	const MinimumNeighborhoods& m_minimum;
+	const UmbilicRegions&       m_umbilics;
+	const VoronoiCells&         m_cells;
+	const LineTracingOptions&   m_options;
+	const LineSpacing&          m_spacing;
+	std::vector<double>         m_step; // N: half the distance to the nearest point, within bounds
+	LineRegistry                m_registry;
+
+	// The half line being traced.
+	int    m_family = 1;
+	double m_side   = 1.0; // +1, then -1: arc lengths of the second half are negative
+	Index  m_region = -1;  // umbilical region of the seed
+
+	std::vector<FlowPoint> m_points; // of all finished lines
+	LineNetwork            m_network;
+};
+Tracer::Tracer(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	const UmbilicRegions&       umbilics,
+	const VoronoiCells&         cells,
+	const LineTracingOptions&   options,
+	const LineSpacing&          spacing) :
+		m_cloud(cloud),
+		m_field(field),
+		m_minimum(minimum),
+		m_umbilics(umbilics),
+		m_cells(cells),
+		m_options(options),
+		m_spacing(spacing),
+		m_step(cloud.size()),
+		m_registry(cloud, minimum)
+{
+	for (Index i = 0; i < cloud.size(); ++i) {
+		double nearest2 = HUGE_VAL;
+		for (Index j : cells.neighbors(i))
+			nearest2 = std::min(nearest2, (cells.site(j) - cells.site(i)).squaredNorm());
+		const double local = minimum.spacing[i] > 0.0 ? minimum.spacing[i] : minimum.medianSpacing;
+		m_step[i] = std::clamp(0.5 * std::sqrt(nearest2), MinStep * local, MaxStep * local);
+	}
+}
+
+bool Tracer::isSeed(Index i) const
+{
+	const PointStatus status = m_field.status[i];
+	if (status == PointStatus::TooFewNeighbors || status == PointStatus::Isolated ||
+		status == PointStatus::Invalid)
+		return false;
+	return !m_umbilics.singular[i] && (!m_umbilics.umbilic[i] || m_umbilics.region[i] >= 0);
+}
+
+std::vector<Index> Tracer::seedsByConfidence() const
+{
+	std::vector<Index> seeds;
+	for (Index i = 0; i < m_cloud.size(); ++i)
+		if (isSeed(i))
+			seeds.push_back(i);
+	std::stable_sort(seeds.begin(), seeds.end(), [&](Index a, Index b) {
+		return m_field.confidence[a] > m_field.confidence[b];
+	});
+	return seeds;
+}
+
+// The tensor says nothing in umbilical regions; there the axes of the region lead.
+Vector3d Tracer::directionOf(const SurfaceSample& sample, Index cell) const
+{
+	if (m_umbilics.region[cell] < 0)
+		return m_family == 1 ? sample.d1 : sample.d2;
+	const Vector3d axis = (m_family == 1 ? m_umbilics.d1 : m_umbilics.d2).col(cell);
+	return (axis - axis.dot(sample.normal) * sample.normal).normalized();
+}
+
+bool Tracer::sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const
+{
+	const Index         closest = m_cells.locate(position, previous.cell);
+	const SurfaceSample sample =
+		projectToSurface(m_cloud, m_field, position, closest, m_options.projection);
+	result.position  = sample.position;
+	result.normal    = sample.normal;
+	result.cell      = m_cells.locate(sample.position, closest);
+	result.curvature = m_family == 1 ? sample.k1 : sample.k2;
+	result.direction = directionOf(sample, closest);
+	// Principal directions have no sign: the line keeps its own.
+	if (result.direction.dot(previous.direction) < 0.0)
+		result.direction = -result.direction;
+	return result.direction.dot(previous.direction) > SharpTurnCosine &&
+		   result.normal.dot(previous.normal) > SharpTurnCosine;
+}
+
+// One step of the second-order scheme A09 uses for its error estimate: along the mean of the directions at
+// both ends. The published backward step bends every line inwards by its own error, and closed lines miss
+// their start.
+bool Tracer::advance(const FlowPoint& from, FlowPoint& to) const
+{
+	double    step = m_step[from.cell];
+	FlowPoint predicted;
+	if (!sampleAt(from.position + step * from.direction, from, predicted))
+		return false;
+	// Delta = |c' - c''| / |c' - c_{i-1}|, with c' along the new direction and c'' along the mean.
+	const double delta = 0.5 * (predicted.direction - from.direction).norm();
+	if (delta > m_options.tolerance) {
+		const double least = MinStep * m_minimum.spacing[from.cell];
+		step = std::min(step, std::max(least, step * std::sqrt(m_options.tolerance / delta)));
+		if (!sampleAt(from.position + step * from.direction, from, predicted))
+			return false;
+	}
+	const Vector3d chord = 0.5 * step * (from.direction + predicted.direction);
+	if (!sampleAt(from.position + chord, from, to))
+		return false;
+	const double moved = (to.position - from.position).dot(chord) / chord.norm();
+	to.arc             = from.arc + m_side * moved;
+	return moved > 0.2 * step; // the projection may not undo the step
+}
+
+bool Tracer::leftCloud(const FlowPoint& point) const
+{
+	const Vector3d offset = point.position - m_cloud.positions.col(point.cell);
+	const double   local  = m_minimum.spacing[point.cell];
+	if (offset.norm() > CloudReach * local)
+		return true;
+	if (m_minimum.status[point.cell] == PointStatus::Ok)
+		return false;
+	// At the rim the neighbours are all on one side; the surface ends on the other.
+	Vector3d inwards = Vector3d::Zero();
+	for (Index j : m_minimum.neighbors[point.cell])
+		inwards += (m_cloud.positions.col(j) - m_cloud.positions.col(point.cell)).normalized();
+	const Vector3d normal = m_cloud.normals.col(point.cell);
+	inwards -= inwards.dot(normal) * normal;
+	return -offset.dot(inwards) > RimMargin * local * inwards.norm();
+}
+
+// Lines from inside a region end at its border, lines from outside too.
+bool Tracer::endsAtUmbilic(Index cell) const
+{
+	if (m_umbilics.singular[cell] || m_umbilics.region[cell] != m_region)
+		return true;
+	return m_umbilics.umbilic[cell] && m_region < 0;
+}
+
+bool Tracer::occupied(const FlowPoint& point, bool approachesStart)
+{
+	const double   d = distance(point.cell);
+	ProximityQuery query;
+	query.position  = point.position;
+	query.normal    = point.normal;
+	query.cell      = point.cell;
+	query.radius    = m_options.stopFactor * d;
+	query.line      = currentLine();
+	query.ownRadius = OwnDistance * query.radius;
+	if (m_side > 0.0) {
+		query.ownFrom = approachesStart ? OwnArc * d : -HUGE_VAL;
+		query.ownTo   = point.arc - OwnArc * d;
+	}
+	else { // all of the first half counts, or the second would run along it
+		query.ownFrom = point.arc + OwnArc * d;
+		query.ownTo   = HUGE_VAL;
+	}
+	return m_registry.occupied(m_family, query);
+}
+
+void Tracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
+{
+	m_registry.add(
+		m_family,
+		{from.position,
+		 to.position,
+		 (from.normal + to.normal).normalized(),
+		 from.cell,
+		 to.cell,
+		 currentLine(),
+		 0.5 * (from.arc + to.arc)});
+}
+
+// Follows the field from `start` (not stored) until one of the stops of A09 section 5.1 and of ours. True if
+// the line came back to its start.
+bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
+{
+	FlowPoint front = start, next;
+	while (std::abs(front.arc) < MaxLength && advance(front, next)) {
+		if (leftCloud(next) || endsAtUmbilic(next.cell))
+			break;
+		// A point passes its start on a parallel track: sideways offsets below the line distance are the
+		// integration's error, or noise, and closing is better than two ends next to each other.
+		const Vector3d toStart = start.position - next.position;
+		const double   ahead   = toStart.dot(next.direction);
+		const double   aside   = (toStart - ahead * next.direction).norm();
+		const double   step    = (next.position - front.position).norm();
+		const double   d       = std::max(distance(next.cell), 2.0 * step);
+		const bool approaches  = m_side > 0.0 && next.arc > 2.0 * step && ahead > 0.0 &&
+								ahead < OwnArc * d && aside < ClosingOffset * d &&
+								next.direction.dot(start.direction) > SharpTurnCosine;
+		if (occupied(next, approaches))
+			break;
+		registerSegment(front, next);
+		half.push_back(next);
+		if (approaches && ahead < 2.0 * step)
+			return true;
+		front = next;
+		if (half.size() % ReportEvery == 0)
+			progress.report(0.0);
+	}
+	return false;
+}
+
+// The sideways offset of a closed line's end from its start, spread over the last stretch.
+void Tracer::closeUp(const FlowPoint& start, Points& half)
+{
+	const FlowPoint& last  = half.back();
+	const Vector3d   gap   = start.position - last.position;
+	const Vector3d   aside = gap - gap.dot(last.direction) * last.direction;
+	const double     from  = std::max(0.0, last.arc - ClosingSpread * aside.norm());
+	const double     to    = last.arc;
+	if (!(aside.norm() > 0.0))
+		return;
+	for (FlowPoint& point : half) {
+		if (point.arc <= from)
+			continue;
+		FlowPoint moved = point;
+		if (sampleAt(point.position + (point.arc - from) / (to - from) * aside, point, moved)) {
+			moved.arc = point.arc;
+			point     = moved;
+		}
+	}
+}
+
+void Tracer::traceThrough(Index seed, const Progress& progress)
+{
+	FlowPoint start;
+	start.cell      = seed;
+	start.normal    = m_cloud.normals.col(seed);
+	m_region        = m_umbilics.region[seed];
+	m_side          = 1.0;
+	start.direction = m_region >= 0 ? (m_family == 1 ? m_umbilics.d1 : m_umbilics.d2).col(seed) :
+									  (m_family == 1 ? m_field.d1 : m_field.d2).col(seed);
+	if (!sampleAt(m_cloud.positions.col(seed), start, start) || endsAtUmbilic(start.cell))
+		return;
+	ProximityQuery query;
+	query.position = start.position;
+	query.normal   = start.normal;
+	query.cell     = start.cell;
+	query.radius   = distance(start.cell);
+	if (m_registry.occupied(m_family, query))
+		return;
+
+	const Index  known = m_registry.size(m_family);
+	Points       line;
+	const bool   closed = traceHalf(start, line, progress);
+	if (closed) {
+		closeUp(start, line);
+		line.insert(line.begin(), start);
+	}
+	else {
+		FlowPoint back = start;
+		back.direction = -start.direction;
+		m_side         = -1.0;
+		Points second;
+		traceHalf(back, second, progress);
+		std::reverse(second.begin(), second.end());
+		second.push_back(start);
+		line.insert(line.begin(), second.begin(), second.end());
+	}
+	m_registry.truncate(m_family, known);
+	if (line.back().arc - line.front().arc < distance(seed))
+		return; // too short to cross two lines of the other family
+	for (std::size_t k = 0; k + 1 < line.size(); ++k)
+		registerSegment(line[k], line[k + 1]);
+	if (closed) {
+		FlowPoint end = start;
+		end.arc       = line.back().arc + (start.position - line.back().position).norm();
+		registerSegment(line.back(), end);
+	}
+	append(line, closed);
+}
+
+void Tracer::append(const Points& line, bool closed)
+{
+	m_points.insert(m_points.end(), line.begin(), line.end());
+	m_network.offsets.push_back(static_cast<Index>(m_points.size()));
+	m_network.family.push_back(m_family);
+	m_network.closed.push_back(closed);
+}
+
+LineNetwork Tracer::run(const Progress& progress)
+{
+	const std::vector<Index> seeds = seedsByConfidence();
+	for (std::size_t k = 0; k < seeds.size(); ++k) {
+		const Progress here = progress.sub(double(k) / seeds.size(), 1.0, "tracing lines of curvature");
+		if (k % ReportEvery == 0)
+			here.report(0.0);
+		for (m_family = 1; m_family <= 2; ++m_family)
+			traceThrough(seeds[k], here);
+	}
+	const Index count = static_cast<Index>(m_points.size());
+	m_network.vertices.resize(3, count);
+	m_network.normals.resize(3, count);
+	m_network.curvature.resize(count);
+	for (Index i = 0; i < count; ++i) {
+		m_network.vertices.col(i) = m_points[i].position;
+		m_network.normals.col(i)  = m_points[i].normal;
+		m_network.curvature[i]    = m_points[i].curvature;
+	}
+	m_network.epsilon = m_spacing.epsilon;
+	return std::move(m_network);
+}
+
+// A traced network within so much of the target is not traced again.
+constexpr double TargetTolerance = 0.08;
+constexpr int    TargetRounds    = 3;
+
+} // namespace
+
+LineNetwork traceLines(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	const UmbilicRegions&       umbilics,
+	const VoronoiCells&         cells,
+	const LineTracingOptions&   options,
+	const Progress&             progress)
+{
+	LineNetwork best;
+	double      bestMiss = HUGE_VAL, wanted = options.targetVertices;
+	const int   rounds   = options.targetVertices > 0 ? TargetRounds : 1;
+	for (int round = 0; round < rounds; ++round) {
+		const LineSpacing spacing = chooseLineSpacing(cloud, field, minimum, options, wanted);
+		Tracer      tracer(cloud, field, minimum, umbilics, cells, options, spacing);
+		LineNetwork network = tracer.run(
+			progress.sub(double(round) / rounds, double(round + 1) / rounds, "tracing lines of curvature"));
+		if (options.targetVertices <= 0)
+			return network;
+		const double found = std::max<Index>(1, tracer.countCrossings());
+		const double miss  = std::abs(std::log(found / options.targetVertices));
+		if (miss < bestMiss) {
+			bestMiss = miss;
+			best     = std::move(network);
+		}
+		if (bestMiss < TargetTolerance)
+			break;
+		wanted *= options.targetVertices / found;
+	}
+	return best;
+}
+
+} // namespace curvature_lines

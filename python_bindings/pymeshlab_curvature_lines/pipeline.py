@@ -1,0 +1,74 @@
+# From a file to lines and mesh: what the command line and the demo have in common.
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reading any file as an oriented cloud, and running the whole pipeline on it."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from collections.abc import Callable
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+import pymeshlab
+
+from .progress import progress
+
+Report = Callable[[str, int], None]
+
+
+@dataclass
+class Reconstruction:
+    """What the pipeline made of a cloud; the layers live in ``meshset``."""
+
+    meshset: pymeshlab.MeshSet
+    mesh: int  # layer ids
+    lines: int | None
+    cleaned: int
+    counts: dict[str, float]  # as the filters returned them, without the timings
+    seconds: dict[str, float]  # per stage, in their order
+
+    def layer(self, number: int) -> pymeshlab.Mesh:
+        return self.meshset.mesh(number)
+
+
+def load_cloud(file: str | PathLike[str]) -> pymeshlab.MeshSet:
+    """One layer of points with unit normals (those of the file, else those of its faces, else none)."""
+    source = pymeshlab.MeshSet()
+    source.load_new_mesh(str(file))
+    if source.mesh_number() > 1:
+        source.generate_by_merging_visible_meshes(mergevertices=False)
+    mesh = source.current_mesh()
+    normals = mesh.vertex_normal_matrix()
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    cloud = pymeshlab.MeshSet()
+    cloud.add_mesh(pymeshlab.Mesh(vertex_matrix=mesh.vertex_matrix(), v_normals_matrix=normals), mesh.label())
+    return cloud
+
+
+def reconstruct(
+    cloud: pymeshlab.MeshSet, *, with_lines: bool = False, report: Report | None = None, **parameters: object
+) -> Reconstruction:
+    """Runs the whole pipeline on the current layer; ``parameters`` are the filter's own."""
+    with progress(cloud, report) if report else nullcontext():
+        result = cloud.generate_surface_reconstruction_curvature_aligned(keep_intermediate_layers=True, **parameters)
+        mesh = cloud.current_mesh_id()
+        cleaned = [layer.id() for layer in cloud if not layer.face_number() and not layer.edge_number()][-1]
+        lines = next((layer.id() for layer in cloud if layer.edge_number()), None)
+        if with_lines and lines is None:
+            cloud.set_current_mesh(cleaned)
+            shared = {name: parameters[name] for name in ("epsilon", "target_vertices") if name in parameters}
+            traced = cloud.generate_curvature_lines(**shared)
+            result |= {name: value for name, value in traced.items() if name not in result}
+            lines = cloud.current_mesh_id()
+            cloud.set_current_mesh(mesh)
+    prefix = "seconds_"
+    return Reconstruction(
+        cloud,
+        mesh,
+        lines,
+        cleaned,
+        counts={name: value for name, value in result.items() if not name.startswith(prefix)},
+        seconds={name.removeprefix(prefix): value for name, value in result.items() if name.startswith(prefix)},
+    )

@@ -1,0 +1,51 @@
+# Progress of a running filter: PyMeshLab has no callback, but prints what the filter reports when verbose.
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads the host's progress lines while a filter runs."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from threading import Thread
+
+import pymeshlab
+
+_PROGRESS = re.compile(r"LOG: \d+ (?P<stage>.*?)\s*\[\s*(?P<percent>\d+)% \]")
+
+
+@contextmanager
+def progress(ms: pymeshlab.MeshSet, report: Callable[[str, int], None]) -> Iterator[None]:
+    """Calls ``report(stage, percent)`` from a second thread for whatever filters of ``ms`` report in the body.
+
+    The host writes to the file descriptors of stdout and stderr, so these are taken away from everybody for the
+    time being; ``report`` must write elsewhere, for instance to a duplicate made before.
+    """
+    reader, writer = os.pipe()
+
+    def listen() -> None:
+        with open(reader, errors="replace") as lines:
+            for line in lines:
+                if found := _PROGRESS.search(line):
+                    report(found["stage"], int(found["percent"]))
+
+    listener = Thread(target=listen, daemon=True)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    saved = {stream: os.dup(stream) for stream in (1, 2)}
+    for stream in saved:
+        os.dup2(writer, stream)
+    os.close(writer)
+    listener.start()
+    ms.set_verbosity(True)
+    try:
+        yield
+    finally:
+        ms.set_verbosity(False)
+        sys.stdout.flush()
+        for stream, copy in saved.items():
+            os.dup2(copy, stream)
+            os.close(copy)
+        listener.join()

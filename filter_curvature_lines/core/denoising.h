@@ -39,15 +39,23 @@ class DenoisingEnergy {
 public:
 	DenoisingEnergy(
 		const PointCloud& start, const NeighborLists& neighbors, const DenoisingOptions& options);
+
 	// x: 3N stacked positions; gradient: resized to 3N. Returns E. Same result for any number of threads.
-	double operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
+	// Not const: the work space is kept between calls.
+	double operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gradient);
 
 private:
-	struct Triangle { Index p, q, r; double sign; };
-	const Eigen::Matrix3Xd m_normals;
-	std::vector<Triangle>  m_triangles;  // sorted by p
-	NeighborLists          m_incidence;  // point -> triangles that touch it, for a race-free gradient
-	DenoisingOptions       m_options;
+	double evaluateFan(Index i, const Eigen::VectorXd& x);
+
+	DenoisingOptions         m_options;
+	Eigen::Matrix3Xd         m_normals;
+	NeighborLists            m_fans;      // the neighbours q of each point p; every two make a triangle
+	std::vector<std::size_t> m_firstSign; // fan -> where its triangles begin in m_signs
+	std::vector<signed char> m_signs;     // s of each triangle, 0 if it is degenerate
+	Eigen::VectorXd          m_minCross;  // fan -> floor of |(q - p) x (r - p)|
+	NeighborLists            m_uses;      // point -> its places in m_fans.indices, for a race-free gradient
+	Eigen::Matrix3Xd         m_pulls;     // gradient of a fan by each of its neighbours
+	Eigen::VectorXd          m_fanEnergies;
 };
 
 } // namespace curvature_lines

@@ -1,0 +1,212 @@
+// L-BFGS-B through LBFGSpp and Polak-Ribiere through dlib, with one guard around both.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "box_minimization.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <LBFGSB.h>
+
+// Only dlib's headers are used: the check that they match a compiled dlib would need that library.
+#define DLIB_TEST_FOR_ODR_VIOLATIONS_H_
+#include <dlib/optimization.h>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double relativeGain = 1e-9;
+
+struct StepFailed : std::runtime_error {
+	using std::runtime_error::runtime_error;
+};
+
+// Sees every evaluation, so that the best point survives whatever the line search does afterwards.
+class Guard {
+public:
+	Guard(const Objective& objective, const Eigen::VectorXd& start, Index limit, const Progress& progress) :
+			m_objective(objective), m_limit(limit), m_progress(progress)
+	{
+		best.x     = start;
+		best.value = m_objective(start, m_gradient);
+	}
+
+	double operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gradient)
+	{
+		const double value = x.allFinite() ? m_objective(x, gradient) : NAN;
+		if (!std::isfinite(value) || !gradient.allFinite())
+			throw StepFailed("the objective is not finite");
+		if (value < best.value) {
+			best.value = value;
+			best.x     = x;
+		}
+		return value;
+	}
+
+	void beginIteration()
+	{
+		m_progress.report(double(best.iterations) / double(std::max<Index>(m_limit, 1)));
+		++best.iterations;
+	}
+	Index iterationsLeft() const { return m_limit - best.iterations; }
+
+	Minimum best;
+
+private:
+	const Objective& m_objective;
+	Index            m_limit;
+	const Progress&  m_progress;
+	Eigen::VectorXd  m_gradient;
+};
+
+// LBFGSpp has no hook per iteration; it calls the line search exactly once in each.
+template<class Scalar>
+struct CountingLineSearch {
+	using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+
+	static void LineSearch(
+		Guard&                              objective,
+		Scalar&                             value,
+		Vector&                             x,
+		Vector&                             gradient,
+		Scalar&                             step,
+		const Scalar&                       maxStep,
+		const Vector&                       direction,
+		const Vector&                       start,
+		const LBFGSpp::LBFGSBParam<Scalar>& parameters)
+	{
+		objective.beginIteration();
+		LBFGSpp::LineSearchMoreThuente<Scalar>::LineSearch(
+			objective, value, x, gradient, step, maxStep, direction, start, parameters);
+	}
+};
+
+using DlibVector = dlib::matrix<double, 0, 1>;
+
+// dlib's conjugate gradients know no bounds. They see the objective of the closest point of the box,
+// which is continuous and constant along every bound that has been passed.
+class ClampedObjective {
+public:
+	ClampedObjective(Guard& guard, const Box& box) : m_guard(guard), m_box(box) {}
+
+	double value(const DlibVector& x)
+	{
+		evaluate(x);
+		return m_value;
+	}
+	DlibVector gradient(const DlibVector& x)
+	{
+		evaluate(x);
+		const Eigen::Map<const Eigen::VectorXd> free(x.begin(), x.size());
+		DlibVector                              result(x.size());
+		for (long i = 0; i < x.size(); ++i)
+			result(i) = free[i] == m_x[i] ? m_gradient[i] : 0.0;
+		return result;
+	}
+
+private:
+	// dlib asks for value and gradient of the same point one after the other.
+	void evaluate(const DlibVector& x)
+	{
+		const Eigen::Map<const Eigen::VectorXd> free(x.begin(), x.size());
+		Eigen::VectorXd clamped = free.cwiseMax(m_box.lower).cwiseMin(m_box.upper);
+		if (m_x.size() == clamped.size() && m_x == clamped)
+			return;
+		m_x.swap(clamped);
+		m_value = m_guard(m_x, m_gradient);
+	}
+
+	Guard&          m_guard;
+	const Box&      m_box;
+	Eigen::VectorXd m_x, m_gradient;
+	double          m_value = 0.0;
+};
+
+class StopWhenSettled {
+public:
+	explicit StopWhenSettled(Guard& guard) : m_guard(guard) {}
+
+	bool should_continue_search(const DlibVector&, double value, const DlibVector& gradient)
+	{
+		const bool settled =
+			m_started && std::abs(m_last - value) <= relativeGain * std::max(std::abs(value), 1.0);
+		m_started = true;
+		m_last    = value;
+		if (settled || m_guard.iterationsLeft() <= 0 || dlib::length_squared(gradient) == 0.0)
+			return false;
+		m_guard.beginIteration();
+		return true;
+	}
+
+private:
+	Guard& m_guard;
+	bool   m_started = false;
+	double m_last    = 0.0;
+};
+
+} // namespace
+
+Minimum minimizeLbfgsB(
+	const Objective&       objective,
+	const Eigen::VectorXd& start,
+	const Box&             box,
+	Index                  maxIterations,
+	const Progress&        progress)
+{
+	Guard guard(objective, start, maxIterations, progress);
+	LBFGSpp::LBFGSBParam<double> parameters;
+	parameters.m           = 10;
+	parameters.epsilon     = 0.0; // the gradient's size has no natural scale here
+	parameters.epsilon_rel = 0.0;
+	parameters.past        = 1;
+	parameters.delta       = relativeGain;
+	double before          = std::numeric_limits<double>::infinity();
+	// A failed line search means a useless memory: begin again without it, as long as that helps.
+	while (guard.iterationsLeft() > 0 && guard.best.value < before) {
+		before                    = guard.best.value;
+		parameters.max_iterations = guard.iterationsLeft();
+		Eigen::VectorXd x         = guard.best.x;
+		double          value     = 0.0;
+		try {
+			LBFGSpp::LBFGSBSolver<double, CountingLineSearch> solver(parameters);
+			solver.minimize(guard, x, value, box.lower, box.upper);
+			break;
+		}
+		catch (const Cancelled&) {
+			throw;
+		}
+		catch (const std::bad_alloc&) {
+			throw;
+		}
+		catch (const std::exception&) {
+		}
+	}
+	return guard.best;
+}
+
+Minimum minimizePolakRibiere(
+	const Objective&       objective,
+	const Eigen::VectorXd& start,
+	const Box&             box,
+	Index                  maxIterations,
+	const Progress&        progress)
+{
+	Guard            guard(objective, start, maxIterations, progress);
+	ClampedObjective clamped(guard, box);
+	DlibVector       x(start.size());
+	std::copy(start.data(), start.data() + start.size(), x.begin());
+	try {
+		dlib::find_min(
+			dlib::cg_search_strategy(),
+			StopWhenSettled(guard),
+			[&](const DlibVector& at) { return clamped.value(at); },
+			[&](const DlibVector& at) { return clamped.gradient(at); },
+			x,
+			-std::numeric_limits<double>::infinity());
+	}
+	catch (const StepFailed&) {
+	}
+	return guard.best;
+}
+
+} // namespace curvature_lines

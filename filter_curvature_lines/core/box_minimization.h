@@ -1,0 +1,41 @@
+// The papers' two optimisers within a box: L-BFGS-B (A09 ref. 52) and Polak-Ribiere conjugate gradients
+// (R07). Unlike the libraries behind them they never fail: what they return is the best point seen.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+
+#include "progress.h"
+
+namespace curvature_lines {
+
+// Returns the value at x and writes the gradient, resized to x.
+using Objective = std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd& gradient)>;
+
+struct Box {
+	Eigen::VectorXd lower, upper;
+};
+
+struct Minimum {
+	Eigen::VectorXd x;
+	double value      = 0.0; // never above the value at the start
+	Index  iterations = 0;
+};
+
+// `start` lies in the box. Both stop after maxIterations, or when an iteration gains less than 1e-9 of
+// the value. Progress reports, and can cancel, once per iteration.
+Minimum minimizeLbfgsB(
+	const Objective&       objective,
+	const Eigen::VectorXd& start,
+	const Box&             box,
+	Index                  maxIterations,
+	const Progress&        progress);
+
+Minimum minimizePolakRibiere(
+	const Objective&       objective,
+	const Eigen::VectorXd& start,
+	const Box&             box,
+	Index                  maxIterations,
+	const Progress&        progress);
+
+} // namespace curvature_lines

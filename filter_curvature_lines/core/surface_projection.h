@@ -14,8 +14,9 @@ enum class ProjectionKind {
 };
 
 struct SurfaceSample {
-	Eigen::Vector3d position, normal;
-	Eigen::Vector3d d1, d2;  // unit principal directions, d2 = n x d1; sign arbitrary
+	Eigen::Vector3d position = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+	Eigen::Vector3d d1 = Eigen::Vector3d::Zero(); // unit principal directions, d2 = n x d1; sign arbitrary
+	Eigen::Vector3d d2 = Eigen::Vector3d::Zero();
 	double k1 = 0.0, k2 = 0.0;
 	Index  closest = -1;     // the cloud point whose statistical weights were used (given by the caller)
 };

@@ -1,0 +1,264 @@
+// Mixed Hermite, locally optimal (Lipman et al. 2007) and weighted-average projection, and interpolation of
+// the curvature tensor (A09 section 5.1 steps 1-3; R07 section 5 steps 1-5).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surface_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int    mixedPasses    = 2;   // the second changes what the first leaves by second-order terms only
+constexpr int    optimalPasses  = 5;   // A09: "4-5 iterations"
+constexpr double kernelRatio    = 2.5; // support radius over the width of the smooth kernel
+constexpr double averageRatio   = 4.0; // LOP: theta(r) = exp(-r^2 / (h/4)^2); plain averages shrink as much
+constexpr double maxExponent    = 300.0; // reached only when `closest` is not the closest by far
+constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
+constexpr double maxNormalTurn  = 0.5;  // tangent of the turn by which curvature may correct a normal
+constexpr double flatShare      = 1e-3; // see principalDirection()
+
+// The points with positive statistical weight at `closest`, and itself. Read in place: nothing is copied.
+class Support {
+public:
+	Support(const PointCloud& cloud, const CurvatureField& field, Index closest) :
+			m_cloud(cloud),
+			m_closest(closest),
+			m_row(field.weights.neighbors[closest]),
+			m_weights(field.weights.values.data() + field.weights.neighbors.offsets[closest])
+	{
+		double weight = 0.0, moment = 0.0;
+		forEach([&](Index j, double w) {
+			weight += w;
+			moment += w * (cloud.positions.col(j) - cloud.positions.col(closest)).squaredNorm();
+		});
+		// Of the uniform disk with this second moment. Unlike the largest distance it hardly jumps from
+		// one cell to the next, and with it what is interpolated.
+		m_radius = std::sqrt(2.0 * moment / weight);
+	}
+
+	double radius() const { return m_radius; }
+
+	template<class Visit> // visit(j, statistical weight)
+	void forEach(const Visit& visit) const
+	{
+		const auto normal = m_cloud.normals.col(m_closest);
+		visit(m_closest, 1.0);
+		for (Index k = 0; k < m_row.size(); ++k)
+			if (m_row[k] != m_closest && m_cloud.normals.col(m_row[k]).dot(normal) > 0.0)
+				visit(m_row[k], m_weights[k]);
+	}
+
+	// visit(j, statistical weight x Gaussian of the distance to `center`, that distance squared). The
+	// Gaussian is relative to the closest point's, so far from the cloud it does not become 0 everywhere.
+	template<class Visit>
+	void forEachNear(const Vector3d& center, double ratio, const Visit& visit) const
+	{
+		const double sharpness = m_radius > 1e-100 ? ratio * ratio / (m_radius * m_radius) : 0.0;
+		const double reference = (m_cloud.positions.col(m_closest) - center).squaredNorm();
+		forEach([&](Index j, double w) {
+			const double d2 = (m_cloud.positions.col(j) - center).squaredNorm();
+			visit(j, w * std::exp(std::min((reference - d2) * sharpness, maxExponent)), d2);
+		});
+	}
+
+private:
+	const PointCloud&  m_cloud;
+	Index              m_closest;
+	NeighborLists::Row m_row;
+	const double*      m_weights;
+	double             m_radius = 0.0;
+};
+
+// Weighted means over the support, seen from c.
+struct Means {
+	double   weight       = 0.0;
+	Vector3d normal       = Vector3d::Zero(); // unit
+	Vector3d offset       = Vector3d::Zero(); // of c from the mean point
+	double   planeHeights = 0.0;              // mean height of c above the points' own tangent planes
+
+	double averageHeight() const { return normal.dot(offset); }
+};
+
+enum class Norm { Squares, Absolute };
+
+Means meansAt(
+	const PointCloud& cloud, const Support& support, const Vector3d& c, double ratio, Norm norm)
+{
+	Means        means;
+	const double floor = std::max(
+		minRadiusRatio * support.radius(), std::numeric_limits<double>::min());
+	support.forEachNear(c, ratio, [&](Index j, double w, double d2) {
+		if (norm == Norm::Absolute)
+			w /= std::max(std::sqrt(d2), floor);
+		const Vector3d d = c - cloud.positions.col(j);
+		means.weight += w;
+		means.normal += w * cloud.normals.col(j);
+		means.offset += w * d;
+		means.planeHeights += w * cloud.normals.col(j).dot(d);
+	});
+	means.normal.normalize(); // never 0: all normals lie in one open half space
+	means.offset /= means.weight;
+	means.planeHeights /= means.weight;
+	return means;
+}
+
+// On a curved surface the average of the points lies k s^2 / 2 inside and that of their tangent planes as
+// far outside: projecting along half of each normal, n_j, and half of the mean one cancels the two.
+Vector3d projectMixed(const PointCloud& cloud, const Support& support, Vector3d c)
+{
+	for (int pass = 0; pass < mixedPasses; ++pass) {
+		const Means means = meansAt(cloud, support, c, kernelRatio, Norm::Squares);
+		c -= 0.5 * (means.planeHeights + means.averageHeight()) * means.normal;
+	}
+	return c;
+}
+
+// x <- sum_j p_j theta(r_j)/r_j / sum_j theta(r_j)/r_j, from the theta-weighted mean. Only the component
+// along the normal is applied: the rest slides the point towards the data by up to a spacing.
+Vector3d projectLocallyOptimal(const PointCloud& cloud, const Support& support, Vector3d c)
+{
+	for (int pass = 0; pass <= optimalPasses; ++pass) {
+		const Norm  norm  = pass == 0 ? Norm::Squares : Norm::Absolute;
+		const Means means = meansAt(cloud, support, c, averageRatio, norm);
+		c -= means.averageHeight() * means.normal;
+	}
+	return c;
+}
+
+Vector3d projectToAverage(const PointCloud& cloud, const Support& support, const Vector3d& c)
+{
+	const Means means = meansAt(cloud, support, c, averageRatio, Norm::Squares);
+	return c - means.averageHeight() * means.normal;
+}
+
+bool hasCurvature(PointStatus status)
+{
+	return status != PointStatus::TooFewNeighbors && status != PointStatus::Invalid;
+}
+
+// The mean of the normals belongs to the mean of the points, which is beside c by a share of the spacing.
+// So each point gives the normal that its own curvature predicts at c: n_j + dN_j (c - p_j).
+Vector3d normalAt(
+	const PointCloud& cloud, const CurvatureField& field, const Support& support, const Vector3d& c)
+{
+	Vector3d mean = Vector3d::Zero(), turn = Vector3d::Zero();
+	support.forEachNear(c, kernelRatio, [&](Index j, double w, double) {
+		mean += w * cloud.normals.col(j);
+		if (!hasCurvature(field.status[j]))
+			return;
+		const Vector3d d = c - cloud.positions.col(j);
+		turn += (w * field.k1[j] * field.d1.col(j).dot(d)) * field.d1.col(j);
+		turn += (w * field.k2[j] * field.d2.col(j).dot(d)) * field.d2.col(j);
+	});
+	turn *= std::min(1.0, maxNormalTurn * mean.norm() / std::max(turn.norm(), 1e-300));
+	return (mean + turn).normalized();
+}
+
+// exp(2 i angle) of a direction tangent at m, after the smallest rotation that takes m to frame.n. Projecting
+// it instead would shorten it, and with it the curvature, by the square of the cosine.
+Vector2d doubledAngle(const TangentFrame& frame, const Vector3d& m, const Vector3d& direction)
+{
+	const double   cosine  = std::max(frame.n.dot(m), -0.999);
+	const Vector3d rotated = direction - frame.n.dot(direction) / (1.0 + cosine) * (m + frame.n);
+	const Vector2d d       = frame.toPlane(rotated);
+	return {d.x() * d.x() - d.y() * d.y(), 2.0 * d.x() * d.y()};
+}
+
+// Mean of k1 e1 e1^T + k2 e2 e2^T in a tangent plane: the isotropic part, and the deviator as a vector of
+// twice the angle, of length k1 - k2.
+struct TensorMean {
+	double   weight = 0.0, mean = 0.0, magnitude = 0.0;
+	Vector2d deviator = Vector2d::Zero(), line = Vector2d::Zero();
+};
+
+TensorMean tensorMean(
+	const PointCloud&     cloud,
+	const CurvatureField& field,
+	const Support&        support,
+	const Vector3d&       c,
+	const TangentFrame&   frame)
+{
+	TensorMean t;
+	support.forEachNear(c, kernelRatio, [&](Index j, double w, double) {
+		if (!hasCurvature(field.status[j]))
+			return;
+		const Vector2d line = doubledAngle(frame, cloud.normals.col(j), field.d1.col(j));
+		t.weight += w;
+		t.mean += w * 0.5 * (field.k1[j] + field.k2[j]);
+		t.magnitude += w * (std::abs(field.k1[j]) + std::abs(field.k2[j]));
+		t.deviator += w * (field.k1[j] - field.k2[j]) * line;
+		t.line += w * line;
+	});
+	if (t.weight > 0.0) {
+		t.mean /= t.weight;
+		t.magnitude /= t.weight;
+		t.deviator /= t.weight;
+		t.line /= t.weight;
+	}
+	return t;
+}
+
+// Where k1 - k2 vanishes (planes, umbilic regions) the tensor has no directions but the field may still
+// have: a small share of the plain mean of its lines takes over, without a jump.
+Vector3d principalDirection(
+	const TensorMean& t, const TangentFrame& frame, double radius, const Vector3d& fallback)
+{
+	const double   scale   = t.magnitude + (radius > 0.0 ? 1e-6 / radius : 1.0);
+	const Vector2d doubled = t.deviator + flatShare * scale * t.line;
+	if (doubled.norm() > 1e-6 * flatShare * scale) {
+		const double angle = 0.5 * std::atan2(doubled.y(), doubled.x());
+		return frame.toSpace({std::cos(angle), std::sin(angle)});
+	}
+	const Vector3d tangent = fallback - fallback.dot(frame.n) * frame.n;
+	return tangent.norm() > 1e-6 ? Vector3d(tangent.normalized()) : frame.u;
+}
+
+Vector3d projectedPosition(
+	const PointCloud& cloud, const Support& support, const Vector3d& c, ProjectionKind kind)
+{
+	switch (kind) {
+	case ProjectionKind::LocallyOptimal: return projectLocallyOptimal(cloud, support, c);
+	case ProjectionKind::WeightedAverage: return projectToAverage(cloud, support, c);
+	case ProjectionKind::Mixed: break;
+	}
+	return projectMixed(cloud, support, c);
+}
+
+} // namespace
+
+SurfaceSample projectToSurface(
+	const PointCloud&     cloud,
+	const CurvatureField& field,
+	const Vector3d&       position,
+	Index                 closest,
+	ProjectionKind        kind)
+{
+	const Support  support(cloud, field, closest);
+	const Vector3d site   = cloud.positions.col(closest);
+	const bool     usable = (position - site).squaredNorm() < 1e100; // false for NaN as well
+	const Vector3d start  = usable ? position : site;
+
+	SurfaceSample sample;
+	sample.closest  = closest;
+	sample.position = projectedPosition(cloud, support, start, kind);
+	sample.normal   = normalAt(cloud, field, support, sample.position);
+
+	const TangentFrame frame(sample.normal);
+	const TensorMean   t          = tensorMean(cloud, field, support, sample.position, frame);
+	const double       difference = t.deviator.norm();
+	sample.k1 = t.mean + 0.5 * difference;
+	sample.k2 = t.mean - 0.5 * difference;
+	sample.d1 = principalDirection(t, frame, support.radius(), field.d1.col(closest));
+	sample.d2 = sample.normal.cross(sample.d1);
+	return sample;
+}
+
+} // namespace curvature_lines

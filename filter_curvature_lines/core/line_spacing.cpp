@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
 
 namespace curvature_lines {
 
@@ -12,14 +13,46 @@ namespace {
 constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cells apart
 constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
 constexpr double AutomaticMax = 0.1; // bounding-box diagonals
+constexpr double Gradation    = 0.25;
 // Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
 // slices' neighbours is 1.22 / sqrt(density).
 constexpr double ShareOfSpacing = 0.67;
 // Lines end up between d and 2 d apart: realised distance over d, measured.
 constexpr double RealisedDistance = 1.3;
 
+// d(kappa) jumps to its upper bound and back within a few spacings where the curvature across changes sign,
+// and no line would get through. Mesh sizing fields are graded for that reason: d grows by no more than
+// `Gradation` times the distance.
+void limitGrowth(
+	const PointCloud& cloud, const MinimumNeighborhoods& minimum, std::vector<double>& d)
+{
+	using Entry = std::pair<double, Index>;
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+	for (Index i = 0; i < cloud.size(); ++i)
+		queue.emplace(d[i], i);
+	while (!queue.empty()) {
+		const auto [value, i] = queue.top();
+		queue.pop();
+		if (value > d[i])
+			continue;
+		for (Index j : minimum.neighbors[i]) {
+			const double limit =
+				value + Gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
+			if (limit < d[j]) {
+				d[j] = limit;
+				queue.emplace(limit, j);
+			}
+		}
+	}
+}
+
 std::array<std::vector<double>, 2> distances(
-	const CurvatureField& field, double epsilon, double minSpacing, double maxSpacing)
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	double                      epsilon,
+	double                      minSpacing,
+	double                      maxSpacing)
 {
 	std::array<std::vector<double>, 2> result;
 	result[0].resize(field.size());
@@ -28,6 +61,8 @@ std::array<std::vector<double>, 2> distances(
 		result[0][i] = lineSpacing(field.k2[i], epsilon, minSpacing, maxSpacing);
 		result[1][i] = lineSpacing(field.k1[i], epsilon, minSpacing, maxSpacing);
 	}
+	limitGrowth(cloud, minimum, result[0]);
+	limitGrowth(cloud, minimum, result[1]);
 	return result;
 }
 
@@ -69,7 +104,9 @@ LineSpacing chooseLineSpacing(
 
 	LineSpacing result;
 	result.epsilon = options.epsilon * diagonal;
-	const auto at  = [&](double epsilon) { return distances(field, epsilon, least, most); };
+	const auto at  = [&](double epsilon) {
+        return distances(cloud, field, minimum, epsilon, least, most);
+	};
 	if (crossings > 0.0) {
 		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);
 		for (int k = 0; k < 50; ++k) {

@@ -14,8 +14,11 @@ struct LineTracingOptions {
 	double minSpacing     = 0.0;  // length; 0 = automatic, a multiple of the median point spacing
 	double maxSpacing     = 0.0;  // length; 0 = automatic
 	double tolerance      = 0.01; // tau of the adaptive step
-	double stopFactor     = 1.0;  // lines start at distance d from the next of their family and end below this times d
 	ProjectionKind projection = ProjectionKind::Mixed;
+	// Lines start at distance d or more from the next of their family, and end below this times d. The papers
+	// have 1: every gap narrower than 2 d ends a line. Measured on a torus at 1500 vertices: ends per mesh
+	// cell .25 (1), .17 (.7), .13 (.5); quads 91, 94, 96 %; with graded distances 91, 94, 98 %.
+	double stopFactor = 0.5;
 };
 
 // All lines of both families. Vertices of line l: [offsets[l], offsets[l + 1]), in order along the line;

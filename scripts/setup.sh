@@ -51,4 +51,4 @@ pip install -q 'scikit-build-core>=0.10' pymeshlab==2025.7.post1
 cmake --preset release >/dev/null || fail "configuring failed, see above"
 cmake --build --preset release --parallel "$(nproc)"
 # The package takes the plugin out of the tree just built; nothing is compiled twice.
-pip install -q --no-build-isolation -C build-dir=build/release '.[render,test]'
+pip install -q --no-build-isolation --config-settings build-dir=build/release '.[render,test]'

@@ -15,21 +15,23 @@ from vtkmodules.vtkCommonCore import vtkLogger
 # Without an X server VTK finds another way to draw by itself, but says so each time.
 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
 
-_SURFACE, _POINTS, _EDGES = "#d8dee6", "#5b7ba3", "#1f2d3d"
+_SURFACE, _POINTS, _EDGES = "#d8dee6", "#8fa8c8", "#1f2d3d"
 _FAMILIES = ["#c8442e", "#2e62c8"]  # along PD1, along PD2
+_LEGEND = {"title": "", "vertical": True, "position_x": 0.93, "position_y": 0.3, "width": 0.03, "height": 0.4}
 
 
 def render(
     path: str | PathLike[str],
     *layers: pymeshlab.Mesh,
-    view: Sequence[float] = (0.35, 0.3, 1.0),
-    up: Sequence[float] = (0.0, 1.0, 0.0),
+    view: Sequence[float] | None = None,
+    up: Sequence[float] | None = None,
     size: tuple[int, int] = (1200, 900),
 ) -> None:
-    """Writes one picture of the layers as a PNG file, seen from the direction ``view`` with ``up`` upwards.
+    """Writes one picture of the layers as a PNG file.
 
     Meshes are drawn with the edges of their polygons, or plainly when lines lie on them; lines in red along the
-    first principal direction and blue along the second; clouds coloured by their quality when they have one.
+    first principal direction and blue along the second; clouds as small discs, coloured by their quality when they
+    have one. ``view`` points from the model to the viewer; the default looks along the model's thinnest side.
     """
     plotter = pyvista.Plotter(off_screen=True, window_size=size)
     plotter.set_background("white")
@@ -42,10 +44,38 @@ def render(
         else:
             _add_cloud(plotter, layer)
     plotter.enable_anti_aliasing("ssaa")
-    plotter.view_vector(view, viewup=up)
-    plotter.camera.zoom(1.3)
+    _place_camera(plotter, np.concatenate([layer.vertex_matrix() for layer in layers]), view, up)
     plotter.screenshot(str(path))
     plotter.close()
+
+
+def _place_camera(
+    plotter: pyvista.Plotter, points: np.ndarray, view: Sequence[float] | None, up: Sequence[float] | None
+) -> None:
+    """Parallel projection, filling the picture."""
+    thinnest = int(np.argmin(np.ptp(points, axis=0)))
+    axes = np.eye(3)
+    # Most scans stand upright along y.
+    up = np.asarray(up if up is not None else axes[2 if thinnest == 1 else 1], dtype=float)
+    if view is None:
+        view = axes[thinnest] + 0.3 * up + 0.35 * np.cross(up, axes[thinnest])
+    forward = -np.asarray(view, dtype=float) / np.linalg.norm(view)
+    right = np.cross(forward, up)
+    right /= np.linalg.norm(right)
+    frame = np.array([right, np.cross(right, forward), forward])
+    seen = points @ frame.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    center = (low + high) / 2 @ frame
+    half_width, half_height, depth = (high - low) / 2
+    width, height = plotter.window_size
+
+    camera = plotter.camera
+    camera.parallel_projection = True
+    camera.focal_point = center
+    camera.position = center - (depth + np.linalg.norm(high - low)) * forward
+    camera.up = frame[1]
+    camera.parallel_scale = 1.05 * max(half_height, half_width * height / width)
+    plotter.reset_camera_clipping_range()
 
 
 def _segments(points: np.ndarray, pairs: np.ndarray) -> pyvista.PolyData:
@@ -63,7 +93,7 @@ def _add_mesh(plotter: pyvista.Plotter, mesh: pymeshlab.Mesh, edges: bool) -> No
 
 
 def _add_lines(plotter: pyvista.Plotter, lines: pymeshlab.Mesh) -> None:
-    # Lifted a little, so that the mesh below does not swallow half of each line.
+    # Lifted a little, so that a mesh below does not swallow half of each line.
     points = lines.vertex_matrix() + 0.003 * lines.bounding_box().diagonal() * lines.vertex_normal_matrix()
     pairs = lines.edge_matrix()
     family = lines.vertex_custom_scalar_attribute_array("line_family")[pairs[:, 0]]
@@ -73,13 +103,20 @@ def _add_lines(plotter: pyvista.Plotter, lines: pymeshlab.Mesh) -> None:
 
 
 def _add_cloud(plotter: pyvista.Plotter, cloud: pymeshlab.Mesh) -> None:
-    points = pyvista.PolyData(cloud.vertex_matrix())
-    normals = cloud.vertex_normal_matrix()
-    if np.any(normals):
-        points.point_data.active_normals = normals
-    quality = cloud.vertex_scalar_array() if cloud.has_vertex_scalar() else np.zeros(cloud.vertex_number())
+    """Discs that just cover the surface, so that what lies behind stays hidden."""
+    positions = cloud.vertex_matrix()
+    some = positions[:: max(1, len(positions) // 300)]
+    nearest = [np.partition(np.sum((positions - point) ** 2, axis=1), 1)[1] for point in some]
+    disc = pyvista.Disc(inner=0, outer=1.2 * np.sqrt(np.median(nearest)), r_res=1, c_res=8)
+    points = pyvista.PolyData(positions)
+    points["normal"] = cloud.vertex_normal_matrix()
+    quality = cloud.vertex_scalar_array() if cloud.has_vertex_scalar() else np.zeros(len(positions))
+    points["quality"] = quality
+    discs = points.glyph(orient="normal", scale=False, geom=disc.rotate_y(-90))  # glyphs turn their x axis
+    style = {"ambient": 0.3, "diffuse": 0.7}
     if np.ptp(quality) > 0:
         # The host's own habit: the ramp ends at the tenth and ninetieth percentile.
-        plotter.add_mesh(points, scalars=quality, clim=np.percentile(quality, [10, 90]), cmap="turbo", point_size=5)
+        ends = np.percentile(quality, [10, 90])
+        plotter.add_mesh(discs, scalars="quality", clim=ends, cmap="turbo", scalar_bar_args=_LEGEND, **style)
     else:
-        plotter.add_mesh(points, color=_POINTS, point_size=5)
+        plotter.add_mesh(discs, color=_POINTS, **style)

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <complex>
+
+#include <Eigen/SparseCore>
+
 #include "robust_curvature.h"
 
 namespace curvature_lines {
@@ -24,21 +28,32 @@ DirectionSmoothingResult smoothDirections(
 	const DirectionSmoothingOptions& options  = {},
 	const Progress&                  progress = {});
 
-// A09's energy in the angles theta (N) against frames TangentFrame(n_i), and its gradient, for tests.
-// Unordered pairs {i, j} with W_i[j] > 0 or W_j[i] > 0 count once, each end's term divided by its degree.
+// A09's energy in the angles theta (N) against frames TangentFrame(n_i), and its gradient:
+//   (1 - alpha) sum_i omega_i sin^2(theta_i - theta0_i) - alpha sum_{i,j} w_ij cos^2(theta_i - theta_j - phi_ij)
+// over unordered pairs with W_i[j] > 0 or W_j[i] > 0, each counted once, w_ij = 1 / degree_i + 1 / degree_j.
 class DirectionEnergy {
 public:
-	DirectionEnergy(const PointCloud& cloud, const CurvatureField& field, double alpha);
+	DirectionEnergy(
+		const PointCloud&     cloud,
+		const CurvatureField& field,
+		double                alpha,
+		const Progress&       progress = {});
+
 	double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const;
+
 	const Eigen::VectorXd& initialAngles() const { return m_theta0; }
+	// Near the minimum: the energy is quadratic in u_i = exp(2 i theta_i) once |u_i| = 1 is given up.
+	Eigen::VectorXd linearStart() const;
 
 private:
-	struct Pair { Index i, j; double phi, weight; }; // theta_i - theta_j = phi where parallel (mod pi)
+	using Hermitian = Eigen::SparseMatrix<std::complex<double>, Eigen::RowMajor>;
+
+	void buildCoupling(const PointCloud& cloud, const CurvatureField& field, const Progress& progress);
+
 	double          m_alpha;
 	Eigen::VectorXd m_theta0, m_omega;
-	std::vector<Pair> m_pairs;
-	friend DirectionSmoothingResult smoothDirections(
-		const PointCloud&, const CurvatureField&, const DirectionSmoothingOptions&, const Progress&);
+	Eigen::VectorXd m_totalWeight; // sum_j w_ij
+	Hermitian       m_coupling;    // w_ij exp(2 i phi_ij); theta_i - theta_j = phi_ij where parallel
 };
 
 } // namespace curvature_lines

@@ -1,0 +1,239 @@
+// Direction smoothing energy (A09 section 4.3) as a Hermitian form in exp(2 i theta), and its minimisation.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "direction_smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <Eigen/IterativeLinearSolvers>
+
+#include "box_minimization.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double maxNormalCosine  = 0.5;  // 60 degrees: beyond, there is an edge between two points
+constexpr Index  maxPartners      = 32;   // of one point's own choice; bounds memory, not the reach
+constexpr double startShift       = 1e-3; // keeps the linear start well-posed without a data term
+constexpr int    linearIterations = 200;
+
+// The points with positive weight at i, on the same face, by index. Of a larger region every m-th one: the same reach
+// at a fraction of the pairs.
+std::vector<Index> partnersOf(const PointCloud& cloud, const StatisticalWeights& weights, Index i)
+{
+	std::vector<Index> partners;
+	const auto         row   = weights.neighbors[i];
+	const double*      value = weights.values.data() + weights.neighbors.offsets[i];
+	for (Index k = 0; k < row.size(); ++k)
+		if (row[k] != i && value[k] > 0.0
+			&& cloud.normals.col(i).dot(cloud.normals.col(row[k])) > maxNormalCosine)
+			partners.push_back(row[k]);
+	const auto size = static_cast<std::int64_t>(partners.size());
+	if (size > maxPartners) {
+		for (std::int64_t k = 0; k < maxPartners; ++k)
+			partners[k] = partners[k * size / maxPartners];
+		partners.resize(maxPartners);
+	}
+	return partners;
+}
+
+NeighborLists transposed(const NeighborLists& lists)
+{
+	NeighborLists result;
+	result.offsets.assign(lists.size() + 1, 0);
+	for (const Index j : lists.indices)
+		++result.offsets[j + 1];
+	for (Index i = 0; i < lists.size(); ++i)
+		result.offsets[i + 1] += result.offsets[i];
+	result.indices.resize(lists.indices.size());
+	std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
+	for (Index i = 0; i < lists.size(); ++i)
+		for (const Index j : lists[i])
+			result.indices[next[j]++] = i;
+	return result;
+}
+
+// The union with the transposed relation, and every point itself: the pattern of a symmetric matrix.
+NeighborLists symmetrized(const NeighborLists& lists)
+{
+	const NeighborLists             others = transposed(lists);
+	std::vector<std::vector<Index>> rows(lists.size());
+	for (Index i = 0; i < lists.size(); ++i) {
+		const auto mine = lists[i], theirs = others[i];
+		rows[i].reserve(mine.size() + theirs.size() + 1);
+		std::set_union(
+			mine.begin(), mine.end(), theirs.begin(), theirs.end(), std::back_inserter(rows[i]));
+		rows[i].insert(std::lower_bound(rows[i].begin(), rows[i].end(), i), i);
+		rows[i].shrink_to_fit();
+	}
+	return NeighborLists::fromRows(rows);
+}
+
+// phi_ij: theta_i - theta_j of parallel directions, after the smallest rotation between the tangent planes.
+// A09 measures theta_i and theta_j against the projection of p_i - p_j in each plane. To first order this is
+// the same, but where the surface bends or twists that chord is not parallel to itself at its two ends.
+double transportAngle(const TangentFrame& a, const TangentFrame& b)
+{
+	const Eigen::Vector3d u =
+		a.u - b.n.dot(a.u) / (1.0 + a.n.dot(b.n)) * (a.n + b.n); // a.u rotated into b's plane
+	return -std::atan2(u.dot(b.v), u.dot(b.u));
+}
+
+// How well determined a direction is: 0 at an umbilic and 2 where k1 = -k2, in place of A09's |k1| / |k2|,
+// which is 1 at umbilics and unbounded on cylinders. The error keeps flat, noisy points from counting.
+double anisotropy(const CurvatureField& field, Index i)
+{
+	if (field.status[i] == PointStatus::TooFewNeighbors || field.status[i] == PointStatus::Invalid)
+		return 0.0;
+	const double k1 = field.k1[i], k2 = field.k2[i], error = field.error[i];
+	const double size = k1 * k1 + k2 * k2 + error * error;
+	return size > 0.0 ? (k1 - k2) * (k1 - k2) / size : 0.0;
+}
+
+Eigen::VectorXcd doubledAngles(const Eigen::VectorXd& theta)
+{
+	Eigen::VectorXcd u(theta.size());
+	for (Eigen::Index i = 0; i < theta.size(); ++i)
+		u[i] = std::polar(1.0, 2.0 * theta[i]);
+	return u;
+}
+
+} // namespace
+
+DirectionEnergy::DirectionEnergy(
+	const PointCloud& cloud, const CurvatureField& field, double alpha, const Progress& progress) :
+		m_alpha(std::clamp(alpha, 0.0, 1.0)), m_theta0(cloud.size()), m_omega(cloud.size())
+{
+	for (Index i = 0; i < cloud.size(); ++i) {
+		const Eigen::Vector2d d = TangentFrame(cloud.normals.col(i)).toPlane(field.d1.col(i));
+		m_theta0[i]             = std::atan2(d.y(), d.x());
+		m_omega[i]              = anisotropy(field, i);
+	}
+	buildCoupling(cloud, field, progress);
+}
+
+void DirectionEnergy::buildCoupling(
+	const PointCloud& cloud, const CurvatureField& field, const Progress& progress)
+{
+	const Index                     n = cloud.size();
+	std::vector<std::vector<Index>> chosen(n);
+	parallelFor(n, progress.sub(0.0, 0.5, "Direction pairs"), [&](Index i) {
+		chosen[i] = partnersOf(cloud, field.weights, i);
+	});
+	const NeighborLists pattern = symmetrized(NeighborLists::fromRows(chosen));
+	m_coupling.resize(n, n);
+	m_coupling.resizeNonZeros(pattern.indices.size());
+	std::copy(pattern.offsets.begin(), pattern.offsets.end(), m_coupling.outerIndexPtr());
+	std::copy(pattern.indices.begin(), pattern.indices.end(), m_coupling.innerIndexPtr());
+	m_totalWeight.resize(n);
+	parallelFor(n, progress.sub(0.5, 1.0, "Direction pairs"), [&](Index i) {
+		const auto         row    = pattern[i];
+		Complex*           values = m_coupling.valuePtr() + pattern.offsets[i];
+		const TangentFrame frame(cloud.normals.col(i));
+		m_totalWeight[i] = 0.0;
+		for (Index k = 0; k < row.size(); ++k) {
+			const Index j = row[k];
+			values[k]     = 0.0;
+			if (j == i)
+				continue;
+			// A row holds the point itself too: the degree is one less than its size.
+			const double w = 1.0 / (row.size() - 1) + 1.0 / (pattern[j].size() - 1);
+			const TangentFrame other(cloud.normals.col(j));
+			// From the lower index, so that both ends have the same number to the last bit.
+			const double phi = i < j ? transportAngle(frame, other) : -transportAngle(other, frame);
+			values[k]        = std::polar(w, 2.0 * phi);
+			m_totalWeight[i] += w;
+		}
+	});
+}
+
+double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const
+{
+	// cos^2 psi = (1 + cos 2 psi) / 2, and w_ij cos 2 psi_ij is the real part of conj(u_i) H_ij u_j.
+	const Eigen::VectorXcd u = doubledAngles(theta);
+	const Eigen::VectorXcd y = m_coupling * u;
+	gradient.resize(theta.size());
+	double data = 0.0, agreement = 0.0;
+	for (Eigen::Index i = 0; i < theta.size(); ++i) {
+		const double  turn = theta[i] - m_theta0[i];
+		const Complex pair = std::conj(u[i]) * y[i]; // sum_j w_ij exp(-2 i psi_ij)
+		data += m_omega[i] * std::sin(turn) * std::sin(turn);
+		agreement += m_totalWeight[i] + pair.real();
+		gradient[i] = (1.0 - m_alpha) * m_omega[i] * std::sin(2.0 * turn) - m_alpha * pair.imag();
+	}
+	return (1.0 - m_alpha) * data - m_alpha * 0.25 * agreement;
+}
+
+// With sin^2(theta - theta0) = |u - u0|^2 / 4 and -cos^2 psi = |u_i - e^(2 i phi) u_j|^2 / 4 - 1 the minimum solves
+//   ((1 - alpha) Omega + alpha (D - H)) u = (1 - alpha) Omega u0.
+// The shift acts only where there is no data term (planes, alpha = 1); the solution is then one step of the
+// inverse power method towards the smoothest field, started at the input.
+Eigen::VectorXd DirectionEnergy::linearStart() const
+{
+	using Single = std::complex<float>; // for a start single precision does, at half the memory
+	const Eigen::VectorXd data = ((1.0 - m_alpha) * m_omega).array() + startShift;
+	const Eigen::VectorXcd u0  = doubledAngles(m_theta0);
+
+	Eigen::SparseMatrix<Single, Eigen::RowMajor> system = m_coupling.cast<Single>();
+	system *= Single(static_cast<float>(-m_alpha));
+	system.diagonal() = (data + m_alpha * m_totalWeight).cast<Single>();
+	Eigen::ConjugateGradient<decltype(system), Eigen::Lower | Eigen::Upper> solver;
+	solver.setMaxIterations(linearIterations);
+	solver.setTolerance(1e-5f);
+	solver.compute(system);
+	const Eigen::VectorXcd right = data.cwiseProduct(u0);
+	const Eigen::VectorXcf u     = solver.solveWithGuess(right.cast<Single>(), u0.cast<Single>());
+
+	Eigen::VectorXd theta = m_theta0;
+	for (Eigen::Index i = 0; i < theta.size(); ++i) {
+		const Complex turn = Complex(u[i]) * std::conj(u0[i]);
+		if (std::isfinite(turn.real()) && std::isfinite(turn.imag()) && std::abs(turn) > 1e-6)
+			theta[i] += 0.5 * std::arg(turn);
+	}
+	return theta;
+}
+
+DirectionSmoothingResult smoothDirections(
+	const PointCloud&                cloud,
+	const CurvatureField&            field,
+	const DirectionSmoothingOptions& options,
+	const Progress&                  progress)
+{
+	const Index           n = cloud.size();
+	const DirectionEnergy energy(cloud, field, options.alpha, progress.sub(0.0, 0.2, "Direction pairs"));
+	const Objective       objective = std::cref(energy);
+	DirectionSmoothingResult result;
+	Eigen::VectorXd          gradient;
+	Eigen::VectorXd          start = energy.linearStart();
+	progress.report(0.4);
+	result.initialEnergy = energy(energy.initialAngles(), gradient);
+	if (!(energy(start, gradient) < result.initialEnergy))
+		start = energy.initialAngles();
+
+	const double  infinity = std::numeric_limits<double>::infinity();
+	const Box     unbounded {
+        Eigen::VectorXd::Constant(n, -infinity), Eigen::VectorXd::Constant(n, infinity)};
+	const Minimum best = minimizeLbfgsB(
+		objective, start, unbounded, options.iterations, progress.sub(0.4, 1.0, "Smoothing directions"));
+
+	result.iterations  = best.iterations;
+	result.finalEnergy = best.value;
+	result.d1.resize(3, n);
+	result.d2.resize(3, n);
+	for (Index i = 0; i < n; ++i) {
+		const TangentFrame frame(cloud.normals.col(i));
+		result.d1.col(i) = frame.toSpace({std::cos(best.x[i]), std::sin(best.x[i])});
+		result.d2.col(i) = frame.n.cross(result.d1.col(i));
+		const double turn = best.x[i] - energy.initialAngles()[i];
+		result.meanTurn += std::abs(std::remainder(turn, EIGEN_PI)) / n;
+	}
+	return result;
+}
+
+} // namespace curvature_lines

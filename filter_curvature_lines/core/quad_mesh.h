@@ -16,9 +16,10 @@ struct QuadMeshOptions {
 struct QuadMeshResult {
 	PolygonMesh  mesh;
 	MeshTopology topology;
-	Index crossings     = 0;
-	Index discardedLoops = 0; // loops around holes and rims
-	Index repairedCrossings = 0; // crossings found only when a face turned out not to be a disk
+	Index crossings       = 0;
+	Index mergedCrossings = 0; // of these, joined to another where three lines pass too close together
+	Index discardedLoops  = 0; // loops around holes and rims, and tangled ones
+	Index tangledLoops    = 0; // loops that bound no disk, so that the mesh has a hole there
 };
 
 // Two-manifold with boundary by construction: each half-edge bounds at most one face, no two edges join

@@ -1,0 +1,205 @@
+// From crossings to faces: the half-edge graph of the lines, its reduction, its loops, and polygons that
+// form a two-manifold (A09 section 6).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quad_mesh.h"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+#include "face_loops.h"
+#include "line_arrangement.h"
+#include "polygon_splitting.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+using Face = std::vector<Index>;
+
+constexpr double SmallHole     = 12.0; // perimeter in median edges
+constexpr double CollarWidth   = 0.3;  // of the way to the centre
+
+// Polygons still in the numbering of the graph, with vertices added at the end.
+struct Polygons {
+	std::vector<Vector3d> vertices, normals;
+	std::vector<Face>     faces;
+};
+
+// A disk whose border visits a vertex twice gets a ring of quads along its border, after which no face
+// does: V and F grow by its n corners (F by n for n - 1 + 1), E by 2 n.
+void addCollared(const Face& border, Polygons& polygons)
+{
+	const Index n = static_cast<Index>(border.size()), first = static_cast<Index>(polygons.vertices.size());
+	Vector3d    center = Vector3d::Zero();
+	for (Index v : border)
+		center += polygons.vertices[v] / n;
+	Face inner;
+	for (Index k = 0; k < n; ++k) {
+		const Index v = border[k], w = border[(k + 1) % n];
+		polygons.vertices.push_back(
+			polygons.vertices[v] + CollarWidth * (center - polygons.vertices[v]));
+		polygons.normals.push_back(polygons.normals[v]);
+		polygons.faces.push_back({v, w, first + (k + 1) % n, first + k});
+		inner.push_back(first + k);
+	}
+	polygons.faces.push_back(inner);
+}
+
+Polygons facesOf(
+	const PointCloud& cloud, const VoronoiCells& cells, const HalfEdgeGraph& graph, Index& discarded)
+{
+	Polygons polygons;
+	for (Index v = 0; v < graph.vertexCount(); ++v) {
+		polygons.vertices.push_back(graph.positions().col(v));
+		polygons.normals.push_back(graph.normals().col(v));
+	}
+	const LoopClassifier kindOf(cloud, cells, graph);
+	for (const std::vector<Index>& loop : graph.faceLoops()) {
+		Face face;
+		for (Index h : loop)
+			face.push_back(graph.origin(h));
+		Face sorted = face;
+		std::sort(sorted.begin(), sorted.end());
+		const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+		if (kindOf(loop) != LoopKind::Face)
+			++discarded;
+		else if (simple)
+			polygons.faces.push_back(face);
+		else
+			addCollared(face, polygons);
+	}
+	return polygons;
+}
+
+// Faces around a vertex that do not hang together get a copy of it each; unused vertices go.
+PolygonMesh separateFans(const Polygons& polygons)
+{
+	struct Corner {
+		Index vertex, next, previous, face, place;
+	};
+	std::vector<Corner> corners;
+	for (Index f = 0; f < static_cast<Index>(polygons.faces.size()); ++f) {
+		const Face& face = polygons.faces[f];
+		const Index n    = static_cast<Index>(face.size());
+		for (Index k = 0; k < n; ++k)
+			corners.push_back({face[k], face[(k + 1) % n], face[(k + n - 1) % n], f, k});
+	}
+	std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+		return a.vertex < b.vertex;
+	});
+
+	std::vector<Face>  faces = polygons.faces;
+	std::vector<Index> source; // of every vertex of the result
+	for (std::size_t begin = 0, end; begin < corners.size(); begin = end) {
+		for (end = begin; end < corners.size() && corners[end].vertex == corners[begin].vertex;)
+			++end;
+		std::vector<Index> fan(end - begin, -1);
+		for (std::size_t seed = 0; seed < fan.size(); ++seed) {
+			if (fan[seed] >= 0)
+				continue;
+			std::vector<std::size_t> front = {seed};
+			fan[seed] = static_cast<Index>(source.size());
+			source.push_back(corners[begin].vertex);
+			for (std::size_t k = 0; k < front.size(); ++k) {
+				const Corner& c = corners[begin + front[k]];
+				for (std::size_t o = 0; o < fan.size(); ++o) {
+					const Corner& other = corners[begin + o];
+					if (fan[o] < 0 && (other.next == c.previous || other.previous == c.next)) {
+						fan[o] = fan[seed];
+						front.push_back(o);
+					}
+				}
+			}
+		}
+		for (std::size_t k = 0; k < fan.size(); ++k)
+			faces[corners[begin + k].face][corners[begin + k].place] = fan[k];
+	}
+
+	PolygonMesh mesh;
+	mesh.vertices.resize(3, source.size());
+	mesh.normals.resize(3, source.size());
+	for (std::size_t v = 0; v < source.size(); ++v) {
+		mesh.vertices.col(v) = polygons.vertices[source[v]];
+		mesh.normals.col(v)  = polygons.normals[source[v]];
+	}
+	mesh.faces = NeighborLists::fromRows(faces);
+	return mesh;
+}
+
+// Fills rims that are short against the mesh with one polygon each.
+void closeSmallHoles(PolygonMesh& mesh)
+{
+	std::vector<Index>                    ahead(mesh.vertexCount(), -1); // along the rim, hole on the left
+	std::vector<std::pair<Index, Index>>  sides;
+	std::vector<double>                   lengths;
+	for (Index f = 0; f < mesh.faceCount(); ++f) {
+		const NeighborLists::Row face = mesh.faces[f];
+		for (Index k = 0; k < face.size(); ++k) {
+			sides.emplace_back(face[k], face[(k + 1) % face.size()]);
+			lengths.push_back((mesh.vertices.col(sides.back().first) -
+							   mesh.vertices.col(sides.back().second)).norm());
+		}
+	}
+	if (sides.empty())
+		return;
+	std::nth_element(lengths.begin(), lengths.begin() + lengths.size() / 2, lengths.end());
+	const double longest = SmallHole * lengths[lengths.size() / 2];
+	std::sort(sides.begin(), sides.end());
+	for (const auto& [a, b] : sides)
+		if (!std::binary_search(sides.begin(), sides.end(), std::make_pair(b, a)))
+			ahead[b] = a;
+
+	std::vector<char> visited(mesh.vertexCount(), 0);
+	for (Index start = 0; start < mesh.vertexCount(); ++start) {
+		Face   rim;
+		double perimeter = 0.0;
+		for (Index v = start; ahead[v] >= 0 && !visited[v]; v = ahead[v]) {
+			visited[v] = 1;
+			rim.push_back(v);
+			perimeter += (mesh.vertices.col(v) - mesh.vertices.col(ahead[v])).norm();
+		}
+		if (rim.size() < 3 || perimeter > longest)
+			continue;
+		mesh.faces.indices.insert(mesh.faces.indices.end(), rim.begin(), rim.end());
+		mesh.faces.offsets.push_back(static_cast<Index>(mesh.faces.indices.size()));
+	}
+}
+
+} // namespace
+
+QuadMeshResult buildQuadMesh(
+	const PointCloud&      cloud,
+	const VoronoiCells&    cells,
+	const LineNetwork&     lines,
+	const QuadMeshOptions& options,
+	const Progress&        progress)
+{
+	QuadMeshResult          result;
+	const LineIntersections found = intersectLines(cells, lines, progress.sub(0.0, 0.6, "crossings"));
+	result.crossings = static_cast<Index>(found.crossings.size());
+
+	const LineArrangement arrangement = arrangeLines(cells, lines, found);
+	result.mergedCrossings = arrangement.merged;
+	result.tangledLoops    = arrangement.tangled;
+	progress.report(0.7);
+	result.mesh = separateFans(facesOf(cloud, cells, arrangement.graph, result.discardedLoops));
+	progress.report(0.8);
+	if (options.closeHoles)
+		closeSmallHoles(result.mesh);
+
+	PolygonSplitter splitter(result.mesh);
+	splitter.cutLargeFaces();
+	splitter.pairWithPentagons();
+	if (options.splitConcave)
+		splitter.splitConcaveFaces();
+	if (options.triangulate)
+		splitter.triangulate();
+	result.mesh     = splitter.mesh();
+	result.topology = topologyOf(result.mesh);
+	progress.report(1.0);
+	return result;
+}
+
+} // namespace curvature_lines

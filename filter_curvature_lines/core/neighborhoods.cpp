@@ -107,32 +107,65 @@ std::vector<Index> sortedIndices(std::vector<DistanceIndex>& found)
 
 constexpr int sliceCount = 6;
 
-int sliceOf(const Eigen::Vector2d& d)
+constexpr double minAgreement = 0.25;
+
+// Points on the other sheet of a thin part have opposing normals. But a point that nearly all others
+// oppose has a wrong normal itself, and would stand alone by that rule.
+std::vector<Index> sameSheet(const PointCloud& cloud, Index i, const Index* first, const Index* last)
 {
-	const double turn = std::atan2(d.y(), d.x()) / (2.0 * EIGEN_PI); // -1/2 .. 1/2
-	const int    s    = static_cast<int>(std::floor((turn < 0.0 ? turn + 1.0 : turn) * sliceCount));
-	return std::min(s, sliceCount - 1);
+	std::vector<Index> same;
+	for (const Index* j = first; j != last; ++j)
+		if (cloud.normals.col(i).dot(cloud.normals.col(*j)) > 0.0)
+			same.push_back(*j);
+	if (double(same.size()) < minAgreement * double(last - first))
+		same.assign(first, last);
+	return same;
 }
 
-// The projected-closest candidate of each slice, -1 where there is none within `reach` (3-D).
-std::array<Index, sliceCount> closestPerSlice(
-	const PointCloud& cloud, Index i, const Index* first, const Index* last, double reach)
+// Slice 0 is centred on the direction `axis`.
+int sliceOf(const Eigen::Vector2d& d, const Eigen::Vector2d& axis)
 {
-	const TangentFrame             frame(cloud.normals.col(i));
+	const double angle = std::atan2(axis.x() * d.y() - axis.y() * d.x(), axis.dot(d));
+	const double turn  = angle / (2.0 * EIGEN_PI) + 0.5 / sliceCount; // in slices' share of a turn
+	const int    slice = static_cast<int>(std::floor((turn < 0.0 ? turn + 1.0 : turn) * sliceCount));
+	return std::min(slice, sliceCount - 1);
+}
+
+// The projected-closest candidate of each slice, -1 where there is none within `reach` (3-D). The papers
+// leave the phase of the slices open: the closest candidate of all sets it, so that neighbourhoods do not
+// depend on the orientation of the axes or the sign of the normals.
+std::array<Index, sliceCount> closestPerSlice(
+	const PointCloud& cloud, Index i, const std::vector<Index>& candidates, double reach)
+{
+	const TangentFrame frame(cloud.normals.col(i));
+	const auto         offset = [&](Index j) -> Eigen::Vector3d {
+		return cloud.positions.col(j) - cloud.positions.col(i);
+	};
+	Eigen::Vector2d axis    = Eigen::Vector2d::UnitX();
+	double          nearest = std::numeric_limits<double>::infinity();
+	for (const Index j : candidates) {
+		const Eigen::Vector2d projected = frame.toPlane(offset(j));
+		const double          distance  = projected.squaredNorm();
+		if (distance > 0.0 && distance < nearest) {
+			nearest = distance;
+			axis    = projected;
+		}
+	}
+
 	std::array<Index, sliceCount>  slots;
 	std::array<double, sliceCount> closest;
 	slots.fill(-1);
 	closest.fill(std::numeric_limits<double>::infinity());
-	for (const Index* j = first; j != last; ++j) {
-		const Eigen::Vector3d d = cloud.positions.col(*j) - cloud.positions.col(i);
-		if (d.norm() > reach || cloud.normals.col(i).dot(cloud.normals.col(*j)) <= 0.0)
+	for (const Index j : candidates) {
+		const Eigen::Vector3d d = offset(j);
+		if (d.norm() > reach)
 			continue;
 		const Eigen::Vector2d projected = frame.toPlane(d);
 		const double          distance  = projected.squaredNorm();
-		const int             slice     = sliceOf(projected);
+		const int             slice     = sliceOf(projected, axis);
 		if (distance < closest[slice]) { // candidates come by (distance, index): ties are settled
 			closest[slice] = distance;
-			slots[slice]   = *j;
+			slots[slice]   = j;
 		}
 	}
 	return slots;
@@ -242,7 +275,7 @@ MinimumNeighborhoods minimumNeighborhoods(
 			if (j != i && end != row + rowSize)
 				*end++ = j;
 		const auto slots = closestPerSlice(
-			cloud, i, row, end, std::numeric_limits<double>::infinity());
+			cloud, i, sameSheet(cloud, i, row, end), std::numeric_limits<double>::infinity());
 		freeSpacing[i] = meanDistance(cloud, i, slots);
 	});
 
@@ -259,8 +292,8 @@ MinimumNeighborhoods minimumNeighborhoods(
 		for (Index c = 0; c < rowSize; ++c)
 			local.push_back(freeSpacing[row[c]]);
 		const double scale = std::max(median, medianInPlace(local));
-		const auto   slots =
-			closestPerSlice(cloud, i, row, row + rowSize, options.boundaryThreshold * scale);
+		const auto   slots = closestPerSlice(
+			  cloud, i, sameSheet(cloud, i, row, row + rowSize), options.boundaryThreshold * scale);
 		for (const Index j : slots)
 			if (j >= 0)
 				rows[i].push_back(j);

@@ -28,14 +28,16 @@ private:
 };
 
 struct MinimumNeighborhoodOptions {
-	// A slice is empty when its closest projected point is farther than this many median spacings.
+	// A slice is empty when no point in it is nearer than this many median spacings; the median is that of
+	// the cloud or of the candidates, whichever is larger: a sparse part of a scan is not a boundary.
 	double boundaryThreshold = 2.5;
-	// Candidates looked at per point; those whose normal opposes the point's are on another sheet.
+	// Candidates looked at per point; those whose normal opposes the point's are on another sheet, unless
+	// nearly all do, because then it is the point's normal that is wrong.
 	Index candidates = 40;
 };
 
 struct MinimumNeighborhoods {
-	NeighborLists           neighbors;   // up to six per point, one per 60 degree slice of the tangent plane
+	NeighborLists           neighbors;   // up to six per point, one per 60 degree slice of the tangent plane, the first centred on the closest
 	std::vector<double>     spacing;     // h_i: mean 3-D distance to them (unit-frame length)
 	std::vector<int>        emptySlices; // largest number of *contiguous* empty slices, 0..6
 	std::vector<PointStatus> status;     // Ok, Boundary (>= 2 contiguous), Isolated (>= 4), TooFewNeighbors

@@ -1,0 +1,54 @@
+// The gate before the all-pairs fit: which points of the region lie on p_i's own piece of the surface.
+// A09 claims that weights vanish across sharp features; with all pairs alone they do not, because two
+// points beyond a crease agree with each other. Internal to robust_curvature.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "operating_region.h"
+
+namespace curvature_lines {
+
+// M-estimates from the pairs (p_i, p_j) alone, from three starts: flat, the minimum neighbourhood, the region.
+struct CentreFits {
+	std::array<VariationModel, 3> models;
+	std::array<double, 3>         sigmas = {0.0, 0.0, 0.0};
+	bool                          valid  = false; // enough points, not on a line
+};
+
+// The median over the cloud of the points' own sigma: makes the costs of different starts comparable.
+double commonCentreScale(const std::vector<CentreFits>& fits);
+
+struct GateResult {
+	std::vector<Index> members; // of the region, p_i first, then at least a handful
+	double             consent = 0.0; // share of the region that agrees, 0..1
+	double             cost    = 1.0; // mean Geman-McClure cost of the centre pairs at the common scale
+};
+
+// Holds the scratch of one thread.
+class FeatureGate {
+public:
+	CentreFits fitCentre(
+		const OperatingRegion& region,
+		const VariationModel&  minimumNeighborhoodStart,
+		const IrlsOptions&     options);
+
+	// The points that agree with the best of the fits.
+	GateResult select(const OperatingRegion& region, const CentreFits& fits, double commonScale);
+
+private:
+	VariationSamples    m_samples;
+	IrlsSolver          m_solver;
+	std::vector<double> m_residuals, m_sorted, m_ones;
+};
+
+// What the near neighbours think of n_i. They support a normal when theirs are similar and they lie near
+// its plane through p_i.
+struct NormalConsensus {
+	Eigen::Vector3d normal;             // the neighbour's normal with most support
+	double          ownSupport = 0.0;   // share of the neighbours that support n_i itself, 0..1
+};
+NormalConsensus normalConsensus(const OperatingRegion& region);
+
+} // namespace curvature_lines

@@ -1,0 +1,74 @@
+// Plane-fit normals and their orientation on exact surfaces.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "normal_estimation.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "analytic_surfaces.h"
+
+using namespace curvature_lines;
+
+namespace {
+
+samples::SampleCloud sample(const std::string& surface, double noise = 0.0)
+{
+	samples::SampleRequest request;
+	request.surface = surface;
+	request.points  = 2000;
+	request.noise   = noise;
+	request.seed    = 3;
+	return samples::generate(request);
+}
+
+double rmsDegrees(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b)
+{
+	double sum = 0.0;
+	for (Eigen::Index i = 0; i < a.cols(); ++i)
+		sum += std::pow(std::acos(std::min(1.0, a.col(i).dot(b.col(i)))), 2);
+	return std::sqrt(sum / double(a.cols())) * 180.0 / 3.14159265358979;
+}
+
+} // namespace
+
+// Prototype: 3.1 degrees clean and 6.0 at 1 % noise with 25 neighbours.
+TEST(NormalEstimation, ClosedSurfacesPointOutward)
+{
+	for (const char* name : {"torus", "sphere", "ellipsoid"}) {
+		const auto cloud = sample(name);
+		EXPECT_LT(rmsDegrees(estimateNormals(cloud.positions), cloud.normals), 4.5) << name;
+	}
+	const auto noisy = sample("torus", 0.01);
+	EXPECT_LT(rmsDegrees(estimateNormals(noisy.positions), noisy.normals), 8.0);
+}
+
+TEST(NormalEstimation, SeparatePiecesAreAllOriented)
+{
+	const auto       one = sample("sphere");
+	const auto       n   = one.positions.cols();
+	Eigen::Matrix3Xd positions(3, 2 * n), normals(3, 2 * n);
+	positions << one.positions, one.positions.colwise() + Eigen::Vector3d(5, 0, -7);
+	normals << one.normals, one.normals;
+	EXPECT_LT(rmsDegrees(estimateNormals(positions), normals), 4.5);
+}
+
+TEST(NormalEstimation, OpenSurfaceIsConsistent)
+{
+	const auto             cloud   = sample("helicoid");
+	const Eigen::Matrix3Xd normals = estimateNormals(cloud.positions);
+	const double           sign    = normals.col(0).dot(cloud.normals.col(0)) < 0.0 ? -1.0 : 1.0;
+	EXPECT_LT(rmsDegrees(sign * normals, cloud.normals), 8.0);
+}
+
+TEST(NormalEstimation, DegenerateInputGivesUnitVectorsOrAnError)
+{
+	EXPECT_THROW(estimateNormals(Eigen::Matrix3Xd::Zero(3, 2)), InputError);
+	for (const Eigen::Matrix3Xd& points :
+		 {Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, 30)),
+		  Eigen::Matrix3Xd(Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(30, 0, 1))}) {
+		const Eigen::Matrix3Xd normals = estimateNormals(points);
+		EXPECT_TRUE(normals.allFinite());
+		EXPECT_LT((normals.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-9);
+	}
+}

@@ -5,17 +5,17 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
-from tqdm import tqdm
-
 from . import __version__
+from .pipeline import Reconstruction, load_cloud, reconstruct
+from .progress import progress_bar
+from .report import number, write_report
 
 METHODS = {"position-field": "Position Field", "traced-lines": "Traced Lines"}
 NORMALS = {"if-missing": "If Missing", "never": "Never", "always": "Always"}
@@ -81,10 +81,6 @@ def _checked(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _run(options: argparse.Namespace) -> None:
-    # Only now: a usage error should not wait for MeshLab and its plugins.
-    from .pipeline import load_cloud, reconstruct
-    from .report import number, write_report
-
     parameters = {
         "method": METHODS[options.method],
         "target_vertices": options.target_vertices,
@@ -100,7 +96,7 @@ def _run(options: argparse.Namespace) -> None:
             parameters[name] = value
 
     cloud = load_cloud(options.input)
-    with _bar(options.quiet) as report:
+    with nullcontext() if options.quiet else progress_bar() as report:
         result = reconstruct(cloud, with_lines=bool(options.lines), report=report, **parameters)
 
     meshset = result.meshset
@@ -117,7 +113,7 @@ def _run(options: argparse.Namespace) -> None:
         write_report(options.report, options.input.name, tables, _picture(result))
 
 
-def _picture(result) -> bytes | None:
+def _picture(result: Reconstruction) -> bytes | None:
     """The mesh as PNG, when the optional renderer is installed."""
     try:
         from .render import render
@@ -127,24 +123,6 @@ def _picture(result) -> bytes | None:
         file = Path(folder) / "mesh.png"
         render(file, result.layer(result.mesh))
         return file.read_bytes()
-
-
-@contextmanager
-def _bar(quiet: bool) -> Iterator:
-    """A progress bar, as the function that the pipeline reports to."""
-    if quiet:
-        yield None
-        return
-    # The pipeline takes stderr away while it listens to the host.
-    with os.fdopen(os.dup(sys.stderr.fileno()), "w") as terminal:
-        with tqdm(total=100, file=terminal, bar_format="{desc:<32.32} {percentage:3.0f}% |{bar}| {elapsed}") as bar:
-
-            def report(stage: str, percent: int) -> None:
-                bar.set_description_str(stage, refresh=False)
-                bar.n = percent
-                bar.refresh()
-
-            yield report
 
 
 def _one_line(error: Exception) -> str:

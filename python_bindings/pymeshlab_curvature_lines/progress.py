@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from threading import Thread
 
 import pymeshlab
+from tqdm import tqdm
 
 _PROGRESS = re.compile(r"LOG: \d+ (?P<stage>.*?)\s*\[\s*(?P<percent>\d+)% \]")
 
@@ -21,7 +22,7 @@ def progress(ms: pymeshlab.MeshSet, report: Callable[[str, int], None]) -> Itera
     """Calls ``report(stage, percent)`` from a second thread for whatever filters of ``ms`` report in the body.
 
     The host writes to the file descriptors of stdout and stderr, so these are taken away from everybody for the
-    time being; ``report`` must write elsewhere, for instance to a duplicate made before.
+    time being; ``report`` must write elsewhere, as ``progress_bar`` does.
     """
     reader, writer = os.pipe()
 
@@ -49,3 +50,18 @@ def progress(ms: pymeshlab.MeshSet, report: Callable[[str, int], None]) -> Itera
             os.dup2(copy, stream)
             os.close(copy)
         listener.join()
+
+
+@contextmanager
+def progress_bar(title: str = "") -> Iterator[Callable[[str, int], None]]:
+    """A bar on stderr, as the function to give to ``progress``."""
+    with os.fdopen(os.dup(sys.stderr.fileno()), "w") as terminal:
+        layout = title + "{desc:<36.36} {percentage:3.0f}% |{bar}| {elapsed}"
+        with tqdm(total=100, file=terminal, bar_format=layout) as bar:
+
+            def report(stage: str, percent: int) -> None:
+                bar.set_description_str(stage, refresh=False)
+                bar.n = percent
+                bar.refresh()
+
+            yield report

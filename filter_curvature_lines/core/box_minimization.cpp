@@ -16,9 +16,23 @@ namespace curvature_lines {
 namespace {
 
 constexpr double relativeGain = 1e-9;
+constexpr double firstMove    = 0.05; // of the box, by the largest coordinate of a first step
 
 struct StepFailed : std::runtime_error {
 	using std::runtime_error::runtime_error;
+};
+
+// Eigen's parallel matrix product gives sums that depend on the number of threads, and its threads wait
+// for each other in busy loops that stall for minutes on a loaded machine.
+class SerialProducts {
+public:
+	SerialProducts() : m_threads(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
+	~SerialProducts() { Eigen::setNbThreads(m_threads); }
+	SerialProducts(const SerialProducts&)            = delete;
+	SerialProducts& operator=(const SerialProducts&) = delete;
+
+private:
+	int m_threads;
 };
 
 // Sees every evaluation, so that the best point survives whatever the line search does afterwards.
@@ -84,15 +98,24 @@ struct CountingLineSearch {
 using DlibVector = dlib::matrix<double, 0, 1>;
 
 // dlib's conjugate gradients know no bounds. They see the objective of the closest point of the box,
-// which is continuous and constant along every bound that has been passed.
+// which is continuous and constant along every bound that has been passed. And their line search tries
+// the whole gradient first, which in a rough objective lands in another valley: it is scaled to a
+// small part of the box.
 class ClampedObjective {
 public:
-	ClampedObjective(Guard& guard, const Box& box) : m_guard(guard), m_box(box) {}
+	ClampedObjective(Guard& guard, const Box& box) : m_guard(guard), m_box(box)
+	{
+		m_x                   = guard.best.x;
+		m_value               = guard(m_x, m_gradient);
+		const double steepest = m_gradient.cwiseAbs().maxCoeff();
+		if (steepest > 0.0)
+			m_scale = firstMove * (box.upper - box.lower).minCoeff() / steepest;
+	}
 
 	double value(const DlibVector& x)
 	{
 		evaluate(x);
-		return m_value;
+		return m_scale * m_value;
 	}
 	DlibVector gradient(const DlibVector& x)
 	{
@@ -100,7 +123,7 @@ public:
 		const Eigen::Map<const Eigen::VectorXd> free(x.begin(), x.size());
 		DlibVector                              result(x.size());
 		for (long i = 0; i < x.size(); ++i)
-			result(i) = free[i] == m_x[i] ? m_gradient[i] : 0.0;
+			result(i) = free[i] == m_x[i] ? m_scale * m_gradient[i] : 0.0;
 		return result;
 	}
 
@@ -119,7 +142,7 @@ private:
 	Guard&          m_guard;
 	const Box&      m_box;
 	Eigen::VectorXd m_x, m_gradient;
-	double          m_value = 0.0;
+	double          m_value = 0.0, m_scale = 1.0;
 };
 
 class StopWhenSettled {
@@ -128,8 +151,7 @@ public:
 
 	bool should_continue_search(const DlibVector&, double value, const DlibVector& gradient)
 	{
-		const bool settled =
-			m_started && std::abs(m_last - value) <= relativeGain * std::max(std::abs(value), 1.0);
+		const bool settled = m_started && std::abs(m_last - value) <= relativeGain * std::abs(value);
 		m_started = true;
 		m_last    = value;
 		if (settled || m_guard.iterationsLeft() <= 0 || dlib::length_squared(gradient) == 0.0)
@@ -153,6 +175,7 @@ Minimum minimizeLbfgsB(
 	Index                  maxIterations,
 	const Progress&        progress)
 {
+	const SerialProducts serial;
 	Guard guard(objective, start, maxIterations, progress);
 	LBFGSpp::LBFGSBParam<double> parameters;
 	parameters.m           = 10;

@@ -13,12 +13,13 @@ namespace {
 constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cells apart
 constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
 constexpr double AutomaticMax = 0.1; // bounding-box diagonals
+constexpr double TargetRange  = 2.0; // with a target, up to so many times the mean distance and down to 1 / it
 constexpr double Gradation    = 0.25;
 // Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
 // slices' neighbours is 1.22 / sqrt(density).
 constexpr double ShareOfSpacing = 0.67;
 // Lines end up between d and 2 d apart: realised distance over d, measured.
-constexpr double RealisedDistance = 1.3;
+constexpr double RealisedDistance = 1.15;
 
 // d(kappa) jumps to its upper bound and back within a few spacings where the curvature across changes sign,
 // and no line would get through. Mesh sizing fields are graded for that reason: d grows by no more than
@@ -66,6 +67,14 @@ std::array<std::vector<double>, 2> distances(
 	return result;
 }
 
+double surfaceArea(const MinimumNeighborhoods& minimum)
+{
+	double sum = 0.0;
+	for (double h : minimum.spacing)
+		sum += ShareOfSpacing * h * h;
+	return sum;
+}
+
 // Two families at distances c d1 and c d2 cross once in every c d1 by c d2 of surface.
 double predictedCrossings(
 	const MinimumNeighborhoods& minimum, const std::array<std::vector<double>, 2>& d)
@@ -76,6 +85,33 @@ double predictedCrossings(
 		sum += ShareOfSpacing * h * h / (RealisedDistance * RealisedDistance * d[0][i] * d[1][i]);
 	}
 	return sum;
+}
+
+struct Bounds {
+	double least, most;
+};
+
+Bounds spacingBounds(
+	const MinimumNeighborhoods& minimum,
+	const LineTracingOptions&   options,
+	double                      diagonal,
+	double                      crossings)
+{
+	const double median = minimum.medianSpacing;
+	Bounds       bounds = {AutomaticMin * median, AutomaticMax * diagonal};
+	if (crossings > 0.0) {
+		// On a cylinder or a plane epsilon alone cannot reach a target: one family stays at its bound.
+		const double mean = std::sqrt(surfaceArea(minimum) / crossings) / RealisedDistance;
+		bounds.least      = std::min(bounds.least, std::max(mean / TargetRange, median));
+		bounds.most       = TargetRange * mean;
+	}
+	if (options.minSpacing > 0.0)
+		bounds.least = options.minSpacing;
+	if (options.maxSpacing > 0.0)
+		bounds.most = options.maxSpacing;
+	bounds.least = std::max(bounds.least, SmallestMin * median);
+	bounds.most  = std::max(bounds.most, bounds.least);
+	return bounds;
 }
 
 } // namespace
@@ -96,16 +132,13 @@ LineSpacing chooseLineSpacing(
 {
 	const Eigen::Vector3d extent =
 		cloud.positions.rowwise().maxCoeff() - cloud.positions.rowwise().minCoeff();
-	const double diagonal = extent.norm(), median = minimum.medianSpacing;
-	double least = options.minSpacing > 0.0 ? options.minSpacing : AutomaticMin * median;
-	least        = std::max(least, SmallestMin * median);
-	double most  = options.maxSpacing > 0.0 ? options.maxSpacing : AutomaticMax * diagonal;
-	most         = std::max(most, least);
+	const double diagonal = extent.norm();
+	const Bounds bounds   = spacingBounds(minimum, options, diagonal, crossings);
 
 	LineSpacing result;
 	result.epsilon = options.epsilon * diagonal;
 	const auto at  = [&](double epsilon) {
-        return distances(cloud, field, minimum, epsilon, least, most);
+        return distances(cloud, field, minimum, epsilon, bounds.least, bounds.most);
 	};
 	if (crossings > 0.0) {
 		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);

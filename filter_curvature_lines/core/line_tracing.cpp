@@ -18,14 +18,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
+constexpr double StartStep       = 0.25;        // at least, of the local spacing: see Tracer()
 constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
 constexpr double CloudReach      = 1.5;         // local spacings from the closest point
-constexpr double RimMargin       = 0.3;         // local spacings beyond a boundary point
 constexpr double MaxLength       = 10.0;        // diagonals
 constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
 constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in d
 constexpr double ClosingOffset   = 0.6;   // a start ahead with less sideways offset closes the line, in d
-constexpr double ClosingSpread   = 12.0;  // the offset is spread over so many times its length
+constexpr double ClosingSpread   = 30.0;  // the offset is spread over so many times its length
 constexpr Index  ReportEvery     = 1024;
 
 struct FlowPoint {
@@ -76,7 +76,7 @@ private:
 	const VoronoiCells&         m_cells;
 	const LineTracingOptions&   m_options;
 	const LineSpacing&          m_spacing;
-	std::vector<double>         m_step; // N: half the distance to the nearest point, within bounds
+	std::vector<double>         m_step; // N: step before adaptation
 	LineRegistry                m_registry;
 
 	// The half line being traced.
@@ -110,7 +110,9 @@ Tracer::Tracer(
 		for (Index j : cells.neighbors(i))
 			nearest2 = std::min(nearest2, (cells.site(j) - cells.site(i)).squaredNorm());
 		const double local = minimum.spacing[i] > 0.0 ? minimum.spacing[i] : minimum.medianSpacing;
-		m_step[i] = std::clamp(0.5 * std::sqrt(nearest2), MinStep * local, MaxStep * local);
+		// A09 starts with half the distance to the nearest point. In random clouds that is often next to
+		// nothing, and what a change of the support moves a projected point weighs more than the step.
+		m_step[i] = std::clamp(0.5 * std::sqrt(nearest2), StartStep * local, MaxStep * local);
 	}
 }
 
@@ -200,7 +202,7 @@ bool Tracer::leftCloud(const FlowPoint& point) const
 		inwards += (m_cloud.positions.col(j) - m_cloud.positions.col(point.cell)).normalized();
 	const Vector3d normal = m_cloud.normals.col(point.cell);
 	inwards -= inwards.dot(normal) * normal;
-	return -offset.dot(inwards) > RimMargin * local * inwards.norm();
+	return offset.dot(inwards) < 0.0;
 }
 
 // Lines from inside a region end at its border, lines from outside too.

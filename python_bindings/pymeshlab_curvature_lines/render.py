@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonCore import vtkLogger
 # Without an X server VTK finds another way to draw by itself, but says so each time.
 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
 
-_SURFACE, _POINTS, _EDGES = "#d8dee6", "#8fa8c8", "#1f2d3d"
+_SURFACE, _POINTS, _EDGES = "#d8dee6", "#a9bfd8", "#1f2d3d"
 _FAMILIES = ["#c8442e", "#2e62c8"]  # along PD1, along PD2
 _LEGEND = {"title": "", "vertical": True, "position_x": 0.93, "position_y": 0.3, "width": 0.03, "height": 0.4}
 
@@ -74,7 +74,7 @@ def _place_camera(
     camera.focal_point = center
     camera.position = center - (depth + np.linalg.norm(high - low)) * forward
     camera.up = frame[1]
-    camera.parallel_scale = 1.05 * max(half_height, half_width * height / width)
+    camera.parallel_scale = max(1.05 * half_height, 1.2 * half_width * height / width)
     plotter.reset_camera_clipping_range()
 
 
@@ -99,15 +99,16 @@ def _add_lines(plotter: pyvista.Plotter, lines: pymeshlab.Mesh) -> None:
     family = lines.vertex_custom_scalar_attribute_array("line_family")[pairs[:, 0]]
     for number, color in enumerate(_FAMILIES, start=1):
         if (chosen := pairs[family == number]).size:
-            plotter.add_mesh(_segments(points, chosen), color=color, line_width=2.0)
+            plotter.add_mesh(_segments(points, chosen), color=color, line_width=2.5)
 
 
 def _add_cloud(plotter: pyvista.Plotter, cloud: pymeshlab.Mesh) -> None:
     """Discs that just cover the surface, so that what lies behind stays hidden."""
     positions = cloud.vertex_matrix()
+    near = min(4, len(positions) - 1)  # the fourth neighbour tells the spacing of grids and random clouds alike
     some = positions[:: max(1, len(positions) // 300)]
-    nearest = [np.partition(np.sum((positions - point) ** 2, axis=1), 1)[1] for point in some]
-    disc = pyvista.Disc(inner=0, outer=1.2 * np.sqrt(np.median(nearest)), r_res=1, c_res=8)
+    spacings = [np.partition(np.sum((positions - point) ** 2, axis=1), near)[near] for point in some]
+    disc = pyvista.Disc(inner=0, outer=0.8 * np.sqrt(np.median(spacings)), r_res=1, c_res=8)
     points = pyvista.PolyData(positions)
     points["normal"] = cloud.vertex_normal_matrix()
     quality = cloud.vertex_scalar_array() if cloud.has_vertex_scalar() else np.zeros(len(positions))

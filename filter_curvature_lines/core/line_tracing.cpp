@@ -20,6 +20,7 @@ using Eigen::Vector3d;
 constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
 constexpr double StartStep       = 0.25;        // at least, of the local spacing: see Tracer()
 constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
+constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of an umbilical region
 constexpr double CloudReach      = 1.5;         // local spacings from the closest point
 constexpr double MaxLength       = 10.0;        // diagonals
 constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
@@ -34,6 +35,29 @@ struct FlowPoint {
 	Index    cell      = -1;
 	double   arc       = 0.0;
 };
+
+// The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families apart.
+std::vector<char> swappedRegions(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	const UmbilicRegions&       umbilics)
+{
+	std::vector<double> votes(umbilics.regions, 0.0);
+	for (Index i = 0; i < cloud.size(); ++i) {
+		const Index region = umbilics.region[i];
+		if (region < 0)
+			continue;
+		for (Index j : minimum.neighbors[i])
+			if (!umbilics.umbilic[j] && cloud.normals.col(i).dot(cloud.normals.col(j)) > SharpTurnCosine)
+				votes[region] += std::abs(umbilics.d1.col(i).dot(field.d1.col(j))) -
+								 std::abs(umbilics.d1.col(i).dot(field.d2.col(j)));
+	}
+	std::vector<char> swapped(votes.size());
+	for (std::size_t r = 0; r < votes.size(); ++r)
+		swapped[r] = votes[r] < 0.0;
+	return swapped;
+}
 
 class Tracer {
 public:
@@ -59,8 +83,9 @@ private:
 	bool               advance(const FlowPoint& from, FlowPoint& to) const;
 	bool     sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const;
 	Vector3d directionOf(const SurfaceSample& sample, Index cell) const;
+	Vector3d regionDirection(Index cell) const;
 	bool     leftCloud(const FlowPoint& point) const;
-	bool     endsAtUmbilic(Index cell) const;
+	bool     endsAtUmbilic(const FlowPoint& from, const FlowPoint& to) const;
 	bool     occupied(const FlowPoint& point, bool approachesStart);
 	void     registerSegment(const FlowPoint& from, const FlowPoint& to);
 	void     closeUp(const FlowPoint& start, Points& half);
@@ -76,13 +101,13 @@ private:
 	const VoronoiCells&         m_cells;
 	const LineTracingOptions&   m_options;
 	const LineSpacing&          m_spacing;
-	std::vector<double>         m_step; // N: step before adaptation
+	std::vector<double>         m_step;    // N: step before adaptation
+	std::vector<char>           m_swapped; // per umbilical region: its d1 continues the d2 around it
 	LineRegistry                m_registry;
 
 	// The half line being traced.
 	int    m_family = 1;
 	double m_side   = 1.0; // +1, then -1: arc lengths of the second half are negative
-	Index  m_region = -1;  // umbilical region of the seed
 
 	std::vector<FlowPoint> m_points; // of all finished lines
 	LineNetwork            m_network;
@@ -103,6 +128,7 @@ Tracer::Tracer(
 		m_options(options),
 		m_spacing(spacing),
 		m_step(cloud.size()),
+		m_swapped(swappedRegions(cloud, field, minimum, umbilics)),
 		m_registry(cloud, minimum)
 {
 	for (Index i = 0; i < cloud.size(); ++i) {
@@ -137,12 +163,18 @@ std::vector<Index> Tracer::seedsByConfidence() const
 	return seeds;
 }
 
+Vector3d Tracer::regionDirection(Index cell) const
+{
+	const bool first = (m_family == 1) != bool(m_swapped[m_umbilics.region[cell]]);
+	return (first ? m_umbilics.d1 : m_umbilics.d2).col(cell);
+}
+
 // The tensor says nothing in umbilical regions; there the axes of the region lead.
 Vector3d Tracer::directionOf(const SurfaceSample& sample, Index cell) const
 {
 	if (m_umbilics.region[cell] < 0)
 		return m_family == 1 ? sample.d1 : sample.d2;
-	const Vector3d axis = (m_family == 1 ? m_umbilics.d1 : m_umbilics.d2).col(cell);
+	const Vector3d axis = regionDirection(cell);
 	return (axis - axis.dot(sample.normal) * sample.normal).normalized();
 }
 
@@ -205,12 +237,16 @@ bool Tracer::leftCloud(const FlowPoint& point) const
 	return offset.dot(inwards) < 0.0;
 }
 
-// Lines from inside a region end at its border, lines from outside too.
-bool Tracer::endsAtUmbilic(Index cell) const
+// A09 ends lines at umbilics and, from inside a region, at its border, because directions jump there. Where
+// they do not (flat parts that go over into singly curved ones, patches that only noise made umbilic) the line
+// goes on; ending it would tear the mesh.
+bool Tracer::endsAtUmbilic(const FlowPoint& from, const FlowPoint& to) const
 {
-	if (m_umbilics.singular[cell] || m_umbilics.region[cell] != m_region)
+	if (m_umbilics.singular[to.cell])
 		return true;
-	return m_umbilics.umbilic[cell] && m_region < 0;
+	const bool border = m_umbilics.region[from.cell] != m_umbilics.region[to.cell];
+	const bool single = m_umbilics.umbilic[to.cell] && m_umbilics.region[to.cell] < 0;
+	return (border || single) && to.direction.dot(from.direction) < BridgeCosine;
 }
 
 bool Tracer::occupied(const FlowPoint& point, bool approachesStart)
@@ -253,7 +289,7 @@ bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& pro
 {
 	FlowPoint front = start, next;
 	while (std::abs(front.arc) < MaxLength && advance(front, next)) {
-		if (leftCloud(next) || endsAtUmbilic(next.cell))
+		if (leftCloud(next) || endsAtUmbilic(front, next))
 			break;
 		// A point passes its start on a parallel track: sideways offsets below the line distance are the
 		// integration's error, or noise, and closing is better than two ends next to each other.
@@ -304,11 +340,11 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 	FlowPoint start;
 	start.cell      = seed;
 	start.normal    = m_cloud.normals.col(seed);
-	m_region        = m_umbilics.region[seed];
 	m_side          = 1.0;
-	start.direction = m_region >= 0 ? (m_family == 1 ? m_umbilics.d1 : m_umbilics.d2).col(seed) :
-									  (m_family == 1 ? m_field.d1 : m_field.d2).col(seed);
-	if (!sampleAt(m_cloud.positions.col(seed), start, start) || endsAtUmbilic(start.cell))
+	start.direction = m_umbilics.region[seed] >= 0 ?
+						  regionDirection(seed) :
+						  Vector3d((m_family == 1 ? m_field.d1 : m_field.d2).col(seed));
+	if (!sampleAt(m_cloud.positions.col(seed), start, start))
 		return;
 	ProximityQuery query;
 	query.position = start.position;

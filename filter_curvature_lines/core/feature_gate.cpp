@@ -19,6 +19,7 @@ constexpr double gateFactor = 2.5; // of sigma: farther from the model is anothe
 // plain noise; above, a sigma that a crease inflates would open it.
 constexpr double minScale = 2.0;
 constexpr double maxScale = 3.0;
+constexpr double maxTurn  = 2.0;
 constexpr double minCommonScale = 1e-3; // radians: exact normals still turn by the curvature's own change
 // p_i's side may hold less than half of the region at a crease, a third at a corner.
 constexpr double creaseQuantile = 0.3;
@@ -89,21 +90,23 @@ GateResult FeatureGate::select(
 		std::iota(result.members.begin(), result.members.end(), 0);
 		return result;
 	}
-	std::size_t best = 0;
-	result.cost      = std::numeric_limits<double>::infinity();
+	VariationModel best  = VariationModel::Zero();
+	double         sigma = 0.0;
+	result.cost          = meanCost(region, best, commonScale);
 	for (std::size_t s = 0; s < fits.models.size(); ++s) {
 		const double cost = meanCost(region, fits.models[s], commonScale);
-		if (cost < result.cost) {
+		if (cost < result.cost && fits.models[s].norm() < maxTurn) {
 			result.cost = cost;
-			best        = s;
+			best        = fits.models[s];
+			sigma       = fits.sigmas[s];
 		}
 	}
-	const double limit = gateFactor * std::clamp(
-		fits.sigmas[best], minScale * commonScale, maxScale * commonScale);
+	const double limit =
+		gateFactor * std::clamp(sigma, minScale * commonScale, maxScale * commonScale);
 
 	m_residuals.assign(1, 0.0);
 	for (Index j = 1; j < region.size(); ++j)
-		m_residuals.push_back(residual(region, fits.models[best], j));
+		m_residuals.push_back(residual(region, best, j));
 	m_sorted            = m_residuals;
 	const Index atLeast = std::min<Index>(minMembers, region.size() - 1);
 	std::nth_element(m_sorted.begin(), m_sorted.begin() + atLeast, m_sorted.end());

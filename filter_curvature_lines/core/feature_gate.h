@@ -34,7 +34,9 @@ public:
 		const VariationModel&  minimumNeighborhoodStart,
 		const IrlsOptions&     options);
 
-	// The points that agree with the best of the fits.
+	// The points that agree with the best of the fits, or with a flat surface. A fit that turns the normal
+	// by more than a right angle within the region is a wall seen from above: it explains all points beyond
+	// a crease, because they project onto one line.
 	GateResult select(const OperatingRegion& region, const CentreFits& fits, double commonScale);
 
 private:

@@ -18,6 +18,7 @@ constexpr Index  minVoters      = 3;    // a point that fewer see is isolated
 constexpr double minNoise       = 0.02; // of the spacing: what a quadric misses on a noise-free surface
 constexpr double vouchingShare  = 0.25; // of the voters, see Tally
 constexpr Index  refitNeighbors = 20;
+constexpr double planeFitCosine = 0.98; // 11 degrees: what the number of neighbours changes at most
 
 double median(std::vector<double>& values)
 {
@@ -110,7 +111,7 @@ double heightNoise(const PointCloud& cloud, const CurvatureField& field, const P
 struct Tally {
 	std::vector<std::atomic<Index>> voters, against;
 	// At a corner of three faces two thirds of the voters see a point off their own face. Those on its own
-	// face know it from its normal as well: W_a[b] > 0, W_b[a] > 0 and the height is right.
+	// face find that its normal fits as well as its height: W_b[a] > 0.
 	std::vector<std::atomic<Index>> vouching;
 
 	explicit Tally(Index n) : voters(n), against(n), vouching(n) {}
@@ -139,7 +140,7 @@ Tally voteByHeight(
 			tally.voters[a].fetch_add(1, std::memory_order_relaxed);
 			if (!accepted)
 				tally.against[a].fetch_add(1, std::memory_order_relaxed);
-			else if (field.weights(a, b) > 0.0 && field.weights(b, a) > 0.0)
+			else if (field.weights(b, a) > 0.0)
 				tally.vouching[a].fetch_add(1, std::memory_order_relaxed);
 		}
 	});
@@ -173,33 +174,35 @@ struct Remaining {
 	std::vector<Index> source; // index in the whole cloud
 };
 
-// A plane fit next to an outlier was pulled towards it: those normals are fitted again, with their old sign.
+Eigen::Vector3d planeNormal(const PointCloud& cloud, const std::vector<Index>& points)
+{
+	Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+	for (const Index j : points)
+		mean += cloud.positions.col(j) / double(points.size());
+	Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+	for (const Index j : points) {
+		const Eigen::Vector3d d = cloud.positions.col(j) - mean;
+		covariance += d * d.transpose();
+	}
+	return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
+}
+
+// A plane fit next to an outlier was pulled towards it, so where the normal is that of a plane fit, it is
+// fitted again without, keeping its sign. Normals that came from elsewhere stay: they know edges better.
 void refitNormals(const PointCloud& before, const std::vector<char>& removed, Remaining& after)
 {
 	const NeighborSearch searchBefore(before.positions), searchAfter(after.cloud.positions);
-	std::vector<Index>   kept;
-	for (Index i = 0; i < before.size(); ++i)
-		if (!removed[i])
-			kept.push_back(i);
 	parallelFor(after.cloud.size(), {}, [&](Index i) {
 		const Eigen::Vector3d p      = after.cloud.positions.col(i);
 		const auto            around = searchBefore.nearest(p, refitNeighbors);
 		if (std::none_of(around.begin(), around.end(), [&](Index j) { return removed[j]; }))
 			return;
-		const auto      neighbors = searchAfter.nearest(p, refitNeighbors);
-		Eigen::Vector3d mean      = Eigen::Vector3d::Zero();
-		for (const Index j : neighbors)
-			mean += after.cloud.positions.col(j) / double(neighbors.size());
-		Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-		for (const Index j : neighbors) {
-			const Eigen::Vector3d d = after.cloud.positions.col(j) - mean;
-			covariance += d * d.transpose();
-		}
-		const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-		const Eigen::Vector3d fitted = eigen.eigenvectors().col(0);
-		const double          sign = fitted.dot(after.cloud.normals.col(i)) < 0.0 ? -1.0 : 1.0;
-		if (fitted.allFinite())
-			after.cloud.normals.col(i) = sign * fitted;
+		const Eigen::Vector3d own = after.cloud.normals.col(i);
+		if (std::abs(planeNormal(before, around).dot(own)) < planeFitCosine)
+			return;
+		const Eigen::Vector3d fitted =
+			planeNormal(after.cloud, searchAfter.nearest(p, refitNeighbors));
+		after.cloud.normals.col(i) = fitted.dot(own) < 0.0 ? -fitted : fitted;
 	});
 }
 

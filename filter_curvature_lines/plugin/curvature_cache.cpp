@@ -1,0 +1,150 @@
+// Fingerprints and the few latest estimates.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_cache.h"
+
+#include <chrono>
+#include <cstring>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr std::size_t maxEntries = 4;
+// An estimate takes about half a kilobyte per point; older ones are dropped beyond this many points.
+constexpr Index maxPoints = 1000000;
+
+// 64-bit hash of a sequence of doubles (multiply-xorshift; each word is mixed in order).
+class Fingerprint {
+public:
+	void add(double value)
+	{
+		std::uint64_t word;
+		std::memcpy(&word, &value, sizeof word);
+		m_hash = (m_hash ^ word) * 0x9e3779b97f4a7c15ULL;
+		m_hash ^= m_hash >> 32;
+	}
+	void add(const Eigen::Matrix3Xd& values)
+	{
+		for (Eigen::Index i = 0; i < values.size(); ++i)
+			add(values.data()[i]);
+	}
+	std::uint64_t value() const { return m_hash; }
+
+private:
+	std::uint64_t m_hash = 0x243f6a8885a308d3ULL;
+};
+
+std::uint64_t fingerprint(const LayerPoints& points)
+{
+	Fingerprint print;
+	print.add(points.positions);
+	print.add(points.normals);
+	return print.value();
+}
+
+std::uint64_t fingerprint(const EstimateOptions& options)
+{
+	Fingerprint print;
+	print.add(options.neighborhood.boundaryThreshold);
+	print.add(options.neighborhood.candidates);
+	print.add(options.curvature.regionScale);
+	print.add(options.curvature.maxIterations);
+	print.add(options.curvature.tolerance);
+	print.add(options.curvature.sigmaFactor);
+	print.add(options.curvature.cut);
+	print.add(options.curvature.featureGate);
+	print.add(options.curvature.robust);
+	print.add(options.curvature.maxPoints);
+	print.add(options.curvature.maxPairs);
+	return print.value();
+}
+
+} // namespace
+
+CurvatureEstimate::CurvatureEstimate(
+	const LayerPoints& points, const EstimateOptions& options, const Progress& progress) :
+		prepared(prepareCloud(points.positions, points.normals)),
+		search(prepared.cloud.positions),
+		minimum(minimumNeighborhoods(
+			prepared.cloud,
+			search,
+			options.neighborhood,
+			progress.sub(0.0, 0.1, "Finding neighborhoods"))),
+		field(robustCurvature(
+			prepared.cloud,
+			search,
+			minimum,
+			options.curvature,
+			progress.sub(0.1, 1.0, "Estimating curvature")))
+{
+}
+
+std::shared_ptr<const CurvatureEstimate>
+CurvatureCache::find(std::uint64_t points, std::uint64_t options)
+{
+	const std::lock_guard<std::mutex> lock(m_mutex);
+	for (const Entry& entry : m_entries)
+		if (entry.points == points && entry.options == options)
+			return entry.estimate;
+	return nullptr;
+}
+
+std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimate(
+	const LayerPoints& points, const EstimateOptions& options, const Progress& progress)
+{
+	const Entry key {fingerprint(points), fingerprint(options), nullptr};
+	if (auto known = find(key.points, key.options))
+		return known;
+	const auto start = std::chrono::steady_clock::now();
+	auto       made  = std::make_shared<CurvatureEstimate>(points, options, progress);
+	made->seconds =
+		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	store({key.points, key.options, made});
+	return made;
+}
+
+LayerCurvature CurvatureCache::ofLayer(
+	const MeshModel& layer, const LayerPoints& points, const Progress& progress)
+{
+	LayerCurvature      result;
+	const std::uint64_t print = fingerprint(points);
+	bool                carried = false;
+	{
+		const std::lock_guard<std::mutex> lock(m_mutex);
+		for (const Entry& entry : m_entries)
+			if (entry.points == print && carriesCurvature(layer, points, *entry.estimate)) {
+				result.estimate = entry.estimate;
+				carried         = true;
+				break;
+			}
+	}
+	if (!carried)
+		result.estimate = find(print, fingerprint(EstimateOptions()));
+	result.reused = result.estimate != nullptr;
+	if (!result.reused)
+		result.estimate = estimate(points, {}, progress);
+
+	result.ownDirections = carried && !carriesDirections(layer, points, *result.estimate);
+	if (result.ownDirections)
+		result.field = std::make_shared<CurvatureField>(
+			withLayerDirections(layer, points, *result.estimate));
+	else
+		result.field = {result.estimate, &result.estimate->field};
+	return result;
+}
+
+void CurvatureCache::store(const Entry& entry)
+{
+	const std::lock_guard<std::mutex> lock(m_mutex);
+	m_entries.push_front(entry);
+	Index total = 0, kept = 0;
+	for (auto e = m_entries.begin(); e != m_entries.end(); ++e, ++kept) {
+		total += e->estimate->prepared.cloud.size();
+		if (kept > 0 && (kept >= static_cast<Index>(maxEntries) || total > maxPoints)) {
+			m_entries.erase(e, m_entries.end());
+			break;
+		}
+	}
+}
+
+} // namespace curvature_lines

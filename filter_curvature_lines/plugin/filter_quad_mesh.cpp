@@ -1,0 +1,140 @@
+// Build Curvature-Aligned Quad Mesh: core/quad_mesh on the layer of lines.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filter_table.h"
+#include "help_text.h"
+#include "polygon_layer.h"
+#include "polyline_layer.h"
+
+namespace curvature_lines {
+
+namespace {
+
+// Where the lines came from, if that layer is still there.
+int defaultCloud(const MeshDocument& document)
+{
+	const MeshModel* current = document.mm();
+	if (current == nullptr)
+		return -1;
+	const int source = sourceLayerOf(*current);
+	return source >= 0 && document.getMesh(source) != nullptr ? source : current->id();
+}
+
+RichParameterList parameters(const MeshDocument& document)
+{
+	const QuadMeshOptions defaults;
+	RichParameterList     list;
+	list.addParam(RichMesh(
+		"point_cloud",
+		defaultCloud(document),
+		&document,
+		"Point cloud",
+		"The layer the lines were traced on. It is found by itself when the lines were traced in "
+		"this session."));
+	addMeshParameters(list);
+	list.addParam(RichBool(
+		"split_concave",
+		defaults.splitConcave,
+		"Split concave faces",
+		"Cut faces with a reflex corner into convex ones."));
+	return list;
+}
+
+// The matrices may only differ by rounding, or the lines lie beside their cloud.
+void requireSameMatrix(const MeshModel& a, const MeshModel& b)
+{
+	for (int r = 0; r < 4; ++r)
+		for (int c = 0; c < 4; ++c)
+			if (!(std::abs(a.cm.Tr[r][c] - b.cm.Tr[r][c]) <=
+				  1e-5 * (1.0 + std::abs(double(b.cm.Tr[r][c])))))
+				throw MLException(
+					"the lines and the point cloud have different matrices; freeze or reset the "
+					"matrices of both layers the same way.");
+}
+
+void requireLinesOnCloud(const LineNetwork& lines)
+{
+	// The cloud fills a box of diagonal 1 about the origin.
+	if (lines.vertices.cwiseAbs().maxCoeff() > 1.0)
+		throw MLException(
+			"the lines do not lie on the point cloud; choose the layer they were traced on as "
+			"'point_cloud'.");
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	QuadMeshOptions options = meshOptions(context.parameters);
+	options.splitConcave    = context.parameters.flag("split_concave");
+
+	const MeshModel& lineLayer  = currentLayer(context.document);
+	const int        cloudId    = context.parameters.layerId("point_cloud");
+	const MeshModel* cloudLayer = context.document.getMesh(cloudId);
+	if (sourceLayerOf(lineLayer) < 0 && lineLayer.cm.en == 0)
+		throw MLException(
+			"the current layer '" + lineLayer.label() +
+			"' holds no lines. Run 'Trace Lines of Curvature' (generate_curvature_lines) on the "
+			"point cloud first and leave its layer current.");
+	if (cloudLayer == nullptr)
+		throw MLException(
+			"parameter 'point_cloud' is " + QString::number(cloudId) +
+			", and there is no such layer; allowed is the layer the lines were traced on.");
+	if (cloudLayer == &lineLayer)
+		throw MLException(
+			"parameter 'point_cloud' names the lines themselves; choose the layer they were traced "
+			"on.");
+	requireSameMatrix(lineLayer, *cloudLayer);
+
+	const LayerPoints   points = readOrientedPoints(*cloudLayer);
+	Stopwatch           total, stage;
+	FilterResults       results;
+	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
+	const LineNetwork   lines    = readLines(lineLayer, prepared);
+	requireLinesOnCloud(lines);
+	const VoronoiCells cells(
+		prepared.cloud.positions, context.progress.sub(0.0, 0.3, "Finding Voronoi cells"));
+	results.seconds("voronoi", stage.lap());
+	const QuadMeshResult built = buildQuadMesh(
+		prepared.cloud, cells, lines, options, context.progress.sub(0.3, 1.0, "Building the mesh"));
+	results.seconds("mesh", stage.lap());
+
+	if (built.mesh.faceCount() == 0)
+		throw MLException(
+			"the lines enclose no face; trace more of them (smaller 'epsilon', or set "
+			"'target_vertices').");
+
+	NewLayers  layers(context.document);
+	MeshModel& layer = layers.add("curvature-aligned mesh", lineLayer);
+	const MeshTopology topology = writePolygons(layer, built.mesh, prepared);
+	layers.keep(layer);
+
+	results.count("lines", lines.lines());
+	results.count("crossings", built.crossings);
+	reportMesh(results, topology);
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec quadMeshFilter()
+{
+	return {
+		"Build Curvature-Aligned Quad Mesh",
+		"generate_curvature_aligned_quad_mesh",
+		"Builds the mesh between lines of curvature: its vertices are the crossings of the two "
+		"families of lines, its edges run along the lines, and most of its faces are "
+		"quadrilaterals."
+		"<br><br><b>Input.</b> The current layer must be a <i>lines of curvature</i> layer; the point "
+		"cloud they were traced on must still be there, unchanged."
+		"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in MeshLab: "
+		"triangles whose inner edges are hidden) and makes it current. Save it as OBJ: PLY drops "
+		"polygons. Every edge has at most two faces." +
+			helpReference,
+		FilterPlugin::Polygonal + FilterPlugin::Remeshing + FilterPlugin::MeshCreation,
+		FilterPlugin::SINGLE_MESH,
+		MeshModel::MM_NONE,
+		MeshModel::MM_NONE,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,230 @@
+// Surface Reconstruction: Curvature-Aligned Quads: core/reconstruction, the whole pipeline, on a layer.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filter_table.h"
+#include "help_text.h"
+#include "polygon_layer.h"
+#include "polyline_layer.h"
+
+#include "core/normal_estimation.h"
+#include "core/reconstruction.h"
+
+namespace curvature_lines {
+
+namespace {
+
+enum class EstimateNormals { IfMissing, Never, Always };
+
+RichParameterList parameters(const MeshDocument&)
+{
+	const ReconstructionOptions defaults;
+	RichParameterList           list;
+	list.addParam(RichEnum(
+		"method",
+		0,
+		QStringList() << "Traced Lines",
+		"Method",
+		"How the mesh is found.<ul>"
+		"<li><b>Traced Lines</b>: between traced lines of curvature, as published</li></ul>"));
+	list.addParam(RichInt(
+		"target_vertices",
+		0,
+		"Target number of vertices",
+		"About how many vertices the mesh gets (at most 10000000); 0 = automatic: from Chord error "
+		"if that is set, else from the size of the cloud."));
+	list.addParam(RichFloat(
+		"epsilon",
+		0,
+		"Chord error",
+		"Sets the density of the lines if no target number is given: how far the chord between two "
+		"lines leaves the surface, as a fraction of the bounding-box diagonal (0 = automatic, at "
+		"most 0.5)."));
+	addMeshParameters(list);
+	list.addParam(RichBool(
+		"reject_outliers", defaults.rejectOutliers, "Reject outliers", "Leave outliers out."));
+	list.addParam(RichBool(
+		"denoise",
+		defaults.denoise,
+		"Denoise",
+		"Correct normals and positions. Switch it off for exact data."));
+	list.addParam(RichBool(
+		"smooth_directions",
+		defaults.smoothDirections,
+		"Smooth the directions",
+		"Smooth the field of principal directions before tracing."));
+	list.addParam(RichEnum(
+		"estimate_normals",
+		0,
+		QStringList() << "If Missing"
+					  << "Never"
+					  << "Always",
+		"Estimate normals",
+		"Whether to compute normals from the positions (plane fits, oriented outward).<ul>"
+		"<li><b>If Missing</b>: when most points have none</li>"
+		"<li><b>Never</b>: use those of the layer</li>"
+		"<li><b>Always</b>: replace those of the layer</li></ul>"));
+	list.addParam(RichBool(
+		"keep_intermediate_layers",
+		false,
+		"Keep intermediate layers",
+		"Add the cleaned cloud, with its curvature, and the lines as layers of their own."));
+	return list;
+}
+
+ReconstructionOptions reconstructionOptions(const Parameters& parameters)
+{
+	ReconstructionOptions options;
+	parameters.choice("method");
+	options.rejectOutliers         = parameters.flag("reject_outliers");
+	options.denoise                = parameters.flag("denoise");
+	options.smoothDirections       = parameters.flag("smooth_directions");
+	options.mesh                   = meshOptions(parameters);
+	options.tracing.targetVertices = parameters.integer("target_vertices", 0, 10000000);
+	options.tracing.epsilon        = parameters.real("epsilon", 0.0, 0.5);
+	return options;
+}
+
+bool mostNormalsMissing(const LayerPoints& points)
+{
+	const auto usable = [](const auto& n) { return n.allFinite() && (n.array() != 0.0).any(); };
+	Index      count  = 0;
+	for (Index i = 0; i < points.size(); ++i)
+		count += usable(points.normals.col(i));
+	return 2 * count < points.size();
+}
+
+// Gives every point with a finite position a normal.
+void estimateMissingNormals(LayerPoints& points, const Progress& progress)
+{
+	std::vector<Index> finite;
+	for (Index i = 0; i < points.size(); ++i)
+		if (points.positions.col(i).allFinite())
+			finite.push_back(i);
+	Eigen::Matrix3Xd positions(3, finite.size());
+	for (std::size_t k = 0; k < finite.size(); ++k)
+		positions.col(k) = points.positions.col(finite[k]);
+	const Eigen::Matrix3Xd normals = estimateNormals(positions, {}, progress);
+	for (std::size_t k = 0; k < finite.size(); ++k)
+		points.normals.col(finite[k]) = normals.col(k);
+}
+
+void writeCleanedCloud(
+	MeshModel& layer, const ReconstructionResult& result, const PreparedCloud& frame)
+{
+	const Index n = result.cloud.size();
+	vcg::tri::Allocator<CMeshO>::AddVertices(layer.cm, n);
+	// The cleaned points are all there is: each stands for itself.
+	LayerPoints   points;
+	PreparedCloud own;
+	own.cloud    = result.cloud;
+	own.center   = frame.center;
+	own.diagonal = frame.diagonal;
+	for (Index i = 0; i < n; ++i) {
+		points.vertex.push_back(i);
+		own.source.push_back(i);
+		own.representative.push_back(i);
+	}
+	points.normals = result.cloud.normals;
+	writePositions(layer, points, own, result.cloud.positions);
+	writeNormals(layer, points, own, result.cloud.normals);
+	const VertexCurvatures values =
+		perVertex(points, own, result.field, result.umbilics.umbilic);
+	writeCurvature(layer, points, values);
+	writeQuality(layer, points, 0.5 * (values.k1 + values.k2));
+}
+
+void reportStages(FilterResults& results, const ReconstructionResult& result)
+{
+	results.count("outliers", std::count(result.outlier.begin(), result.outlier.end(), char(1)));
+	results.count(
+		"umbilic",
+		std::count(result.umbilics.umbilic.begin(), result.umbilics.umbilic.end(), char(1)));
+	results.count("lines", result.lines.lines());
+	results.count(
+		"closed_lines", std::count(result.lines.closed.begin(), result.lines.closed.end(), char(1)));
+	results.real("epsilon", result.lines.epsilon);
+	for (const auto& [stage, seconds] : result.seconds)
+		results.seconds(stage, seconds);
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	const Parameters&           parameters = context.parameters;
+	const ReconstructionOptions options    = reconstructionOptions(parameters);
+	const auto estimate      = static_cast<EstimateNormals>(parameters.choice("estimate_normals"));
+	const bool intermediates = parameters.flag("keep_intermediate_layers");
+
+	const MeshModel& source = currentLayer(context.document);
+	LayerPoints      points = readPoints(source);
+	FilterResults    results;
+	Stopwatch        total;
+	const bool       estimated = estimate == EstimateNormals::Always ||
+						   (estimate == EstimateNormals::IfMissing && mostNormalsMissing(points));
+	if (estimated) {
+		estimateMissingNormals(points, context.progress.sub(0.0, 0.1, "Estimating normals"));
+		results.seconds("normals", total.seconds());
+	}
+	else {
+		points = readOrientedPoints(source);
+	}
+
+	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
+	const ReconstructionResult result =
+		reconstruct(prepared.cloud, options, context.progress.sub(0.1, 1.0, ""));
+	if (result.mesh.mesh.faceCount() == 0)
+		throw MLException(
+			"no face was found between the lines of curvature (" +
+			QString::number(result.lines.lines()) +
+			" lines): the surface is flat or umbilic everywhere, or the cloud is too sparse for the "
+			"chosen density. Raise 'target_vertices', or check that the normals are right.");
+
+	NewLayers  layers(context.document);
+	if (intermediates) {
+		MeshModel& cleaned = layers.add("cleaned cloud", source);
+		writeCleanedCloud(cleaned, result, prepared);
+		writeLines(
+			layers.add("lines of curvature", source), result.lines, prepared, cleaned.id());
+	}
+	MeshModel& layer = layers.add("curvature-aligned mesh", source);
+	const MeshTopology topology = writePolygons(layer, result.mesh.mesh, prepared);
+	layers.keep(layer);
+
+	results.count("points", points.size());
+	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
+	results.count("duplicates", prepared.duplicates);
+	results.flag("normals_estimated", estimated);
+	results.real("noise", result.noise * prepared.diagonal);
+	results.real("moved_rms", result.rmsMove * prepared.diagonal);
+	reportStages(results, result);
+	results.count("crossings", result.mesh.crossings);
+	reportMesh(results, topology);
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec reconstructionFilter()
+{
+	return {
+		"Surface Reconstruction: Curvature-Aligned Quads",
+		"generate_surface_reconstruction_curvature_aligned",
+		"Makes a quad-dominant mesh from a point cloud, its edges aligned with the principal "
+		"directions of curvature. In one step: outliers are left out, normals and positions "
+		"denoised, curvature and directions estimated and smoothed, lines of curvature traced, and "
+		"the faces between them built." +
+			helpInput +
+			" This filter can estimate missing normals itself."
+			"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in MeshLab: "
+			"triangles whose inner edges are hidden) and makes it current; the input stays as it "
+			"is. Save the mesh as OBJ: PLY drops polygons." +
+			helpConventions + helpReference,
+		FilterPlugin::Remeshing + FilterPlugin::PointSet + FilterPlugin::Polygonal +
+			FilterPlugin::MeshCreation,
+		FilterPlugin::SINGLE_MESH,
+		MeshModel::MM_NONE,
+		MeshModel::MM_NONE,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,49 @@
+// The dictionary a filter returns. Hosts pass on int, double and bool only; anything else is dropped.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <QVariant>
+
+namespace curvature_lines {
+
+class FilterResults {
+public:
+	void count(const std::string& key, std::ptrdiff_t n) { m_values[key] = static_cast<int>(n); }
+	void real(const std::string& key, double value)
+	{
+		m_values[key] = std::isfinite(value) ? value : 0.0;
+	}
+	void flag(const std::string& key, bool value) { m_values[key] = value; }
+	void seconds(const std::string& stage, double value) { real("seconds_" + stage, value); }
+
+	const std::map<std::string, QVariant>& values() const { return m_values; }
+
+private:
+	std::map<std::string, QVariant> m_values;
+};
+
+class Stopwatch {
+public:
+	double seconds() const
+	{
+		return std::chrono::duration<double>(Clock::now() - m_start).count();
+	}
+	// Time since the start or the last lap.
+	double lap()
+	{
+		const double elapsed = seconds();
+		m_start              = Clock::now();
+		return elapsed;
+	}
+
+private:
+	using Clock             = std::chrono::steady_clock;
+	Clock::time_point m_start = Clock::now();
+};
+
+} // namespace curvature_lines

@@ -1,0 +1,178 @@
+// Trace Lines of Curvature: core/line_tracing on a layer.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filter_table.h"
+#include "help_text.h"
+#include "polyline_layer.h"
+
+#include "core/direction_smoothing.h"
+
+namespace curvature_lines {
+
+namespace {
+
+RichParameterList parameters(const MeshDocument&)
+{
+	const LineTracingOptions defaults;
+	RichParameterList        list;
+	list.addParam(RichFloat(
+		"epsilon",
+		Scalarm(defaults.epsilon),
+		"Chord error",
+		"Sets the density of the lines: neighbouring lines are as far apart as a chord that leaves "
+		"the surface by this fraction of the bounding-box diagonal (1e-9 to 0.5)."));
+	list.addParam(RichInt(
+		"target_vertices",
+		0,
+		"Target number of crossings",
+		"If not 0, the chord error is found so that the lines cross in about so many points: the "
+		"vertices of the mesh to come (at most 10000000)."));
+	list.addParam(RichFloat(
+		"min_spacing",
+		0,
+		"Minimum spacing",
+		"Lines of one family are never closer than this, in the layer's units; 0 = automatic, from "
+		"the point spacing."));
+	list.addParam(RichFloat(
+		"max_spacing",
+		0,
+		"Maximum spacing",
+		"The distance between lines where the surface is flat, in the layer's units; 0 = "
+		"automatic."));
+	list.addParam(RichFloat(
+		"tolerance",
+		Scalarm(defaults.tolerance),
+		"Step tolerance",
+		"Relative error per step; smaller values trace in smaller steps (1e-6 to 1).",
+		true));
+	list.addParam(RichEnum(
+		"projection",
+		static_cast<int>(defaults.projection),
+		QStringList() << "Mixed"
+					  << "Locally Optimal"
+					  << "Weighted Average",
+		"Projection",
+		"How line points are kept on the surface.<ul>"
+		"<li><b>Mixed</b>: mean of point average and tangent planes, whose errors cancel</li>"
+		"<li><b>Locally Optimal</b>: as published in 2009</li>"
+		"<li><b>Weighted Average</b>: as published in 2007</li></ul>",
+		true));
+	addUmbilicRatio(list);
+	list.addParam(RichBool(
+		"smooth_directions",
+		true,
+		"Smooth the directions",
+		"Smooth the principal directions first, unless those on the layer are smoothed already. The "
+		"layer keeps its own."));
+	return list;
+}
+
+LineTracingOptions tracingOptions(const Parameters& parameters, double diagonal)
+{
+	LineTracingOptions options;
+	options.epsilon        = parameters.real("epsilon", 1e-9, 0.5);
+	options.targetVertices = parameters.integer("target_vertices", 0, 10000000);
+	options.minSpacing     = parameters.length("min_spacing") / diagonal;
+	options.maxSpacing     = parameters.length("max_spacing") / diagonal;
+	if (options.maxSpacing > 0.0 && options.maxSpacing < options.minSpacing)
+		throw MLException(
+			"parameter 'max_spacing' is smaller than 'min_spacing'; raise it, or set it to 0 "
+			"(automatic).");
+	options.tolerance  = parameters.real("tolerance", 1e-6, 1.0);
+	options.projection = static_cast<ProjectionKind>(parameters.choice("projection"));
+	return options;
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	const Parameters& parameters = context.parameters;
+	tracingOptions(parameters, 1.0); // complain before the long part
+	UmbilicOptions umbilicOptions;
+	umbilicOptions.ratio = umbilicRatio(parameters);
+
+	MeshModel&        cloudLayer = currentLayer(context.document);
+	const LayerPoints points     = readOrientedPoints(cloudLayer);
+	Stopwatch         total, stage;
+	FilterResults     results;
+	LayerCurvature    curvature =
+		context.cache.ofLayer(cloudLayer, points, context.progress.sub(0.0, 0.3, ""));
+	const CurvatureEstimate& estimate = *curvature.estimate;
+	const PointCloud&        cloud    = estimate.prepared.cloud;
+	results.seconds("curvature", stage.lap());
+
+	if (parameters.flag("smooth_directions") && !curvature.ownDirections) {
+		DirectionSmoothingResult smoothed = smoothDirections(
+			cloud, *curvature.field, {}, context.progress.sub(0.3, 0.5, "Smoothing directions"));
+		auto field      = std::make_shared<CurvatureField>(*curvature.field);
+		field->d1       = std::move(smoothed.d1);
+		field->d2       = std::move(smoothed.d2);
+		curvature.field = field;
+		results.seconds("smoothing", stage.lap());
+	}
+	const UmbilicRegions umbilics =
+		findUmbilics(cloud, *curvature.field, estimate.minimum, umbilicOptions);
+	results.seconds("umbilics", stage.lap());
+	const VoronoiCells cells(
+		cloud.positions, context.progress.sub(0.5, 0.6, "Finding Voronoi cells"));
+	results.seconds("voronoi", stage.lap());
+	const LineNetwork lines = traceLines(
+		cloud,
+		*curvature.field,
+		estimate.minimum,
+		umbilics,
+		cells,
+		tracingOptions(parameters, estimate.prepared.diagonal),
+		context.progress.sub(0.6, 1.0, "Tracing lines"));
+	results.seconds("tracing", stage.lap());
+	if (lines.lines() == 0)
+		throw MLException(
+			"no line of curvature was found: the surface is flat or umbilic everywhere, or the "
+			"spacing is larger than the cloud. A smaller 'max_spacing' may help.");
+
+	NewLayers  layers(context.document);
+	MeshModel& layer = layers.add("lines of curvature", cloudLayer);
+	writeLines(layer, lines, estimate.prepared, cloudLayer.id());
+	layers.keep(layer);
+
+	results.count("points", points.size());
+	results.count("invalid", estimate.prepared.nonFinite + estimate.prepared.zeroNormals);
+	results.count(
+		"umbilic", std::count(umbilics.umbilic.begin(), umbilics.umbilic.end(), char(1)));
+	results.count("umbilic_regions", umbilics.regions);
+	results.count("lines", lines.lines());
+	results.count("lines_family_1", std::count(lines.family.begin(), lines.family.end(), 1));
+	results.count("lines_family_2", std::count(lines.family.begin(), lines.family.end(), 2));
+	results.count("closed_lines", std::count(lines.closed.begin(), lines.closed.end(), char(1)));
+	results.count("vertices", lines.vertices.cols());
+	results.count("edges", layer.cm.en);
+	results.real("epsilon", lines.epsilon);
+	results.flag("curvature_reused", curvature.reused);
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec traceLinesFilter()
+{
+	return {
+		"Trace Lines of Curvature",
+		"generate_curvature_lines",
+		"Traces the lines of curvature of a point cloud, the curves that follow the two families of "
+		"principal directions, without a mesh. Lines start where the curvature estimate is most "
+		"reliable; they are as dense as the curvature across them asks for." +
+			helpInput +
+			"<br><br><b>Writes</b> a new layer <i>lines of curvature</i> of vertices and edges, and "
+			"makes it current: normals, quality (the curvature along the line), colour (orange "
+			"along PD1, blue along PD2) and the vertex attributes <tt>line_id</tt> and "
+			"<tt>line_family</tt> (1 or 2). <i>Build Curvature-Aligned Quad Mesh</i> goes on from "
+			"there. Save it as OBJ: PLY drops edges." +
+			helpChaining + helpConventions + helpReference,
+		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::MeshCreation,
+		FilterPlugin::SINGLE_MESH,
+		MeshModel::MM_NONE,
+		MeshModel::MM_NONE,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

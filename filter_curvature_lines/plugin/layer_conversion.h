@@ -1,0 +1,96 @@
+// Layers to point clouds and back. Everything is in the layer's own (local) coordinates, in double;
+// deleted vertices are skipped; values go back to every vertex, duplicates included.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <common/ml_document/mesh_document.h>
+
+#include "core/robust_curvature.h"
+
+namespace curvature_lines {
+
+struct CurvatureEstimate;
+struct MinimumNeighborhoods;
+struct UmbilicRegions;
+
+// The current layer; throws when the document has none.
+MeshModel& currentLayer(MeshDocument& document);
+
+struct LayerPoints {
+	Eigen::Matrix3Xd         positions, normals; // 3 x N, as they are: any length, maybe not finite
+	std::vector<std::size_t> vertex;             // N: index in cm.vert
+
+	Index size() const { return static_cast<Index>(vertex.size()); }
+};
+
+// Throws when there is no vertex.
+LayerPoints readPoints(const MeshModel& layer);
+// The same, and throws when no vertex has a normal.
+LayerPoints readOrientedPoints(const MeshModel& layer);
+
+// Curvature of every point of a layer, in model units and with no value a host could choke on.
+struct VertexCurvatures {
+	Eigen::VectorXd          k1, k2, error, radius, confidence; // N
+	Eigen::Matrix3Xd         d1, d2; // 3 x N unit, tangent to the vertex normal
+	std::vector<PointStatus> status; // N
+};
+VertexCurvatures perVertex(
+	const LayerPoints&       points,
+	const PreparedCloud&     prepared,
+	const CurvatureField&    field,
+	const std::vector<char>& umbilic); // per prepared point
+
+// K1, K2, PD1, PD2 and the curv_* attributes.
+void writeCurvature(MeshModel& layer, const LayerPoints& points, const VertexCurvatures& values);
+// Per vertex: one scalar as quality.
+void writeQuality(MeshModel& layer, const LayerPoints& points, const Eigen::VectorXd& values);
+// 3 x N, 0..1.
+void writeColors(MeshModel& layer, const LayerPoints& points, const Eigen::Matrix3Xd& colors);
+// MeshLab's ramp between the 10th and the 90th percentile of the vertices with an estimate.
+void writeColorRamp(
+	MeshModel& layer, const LayerPoints& points, const std::vector<PointStatus>& status);
+void writeAttribute(
+	MeshModel&             layer,
+	const LayerPoints&     points,
+	const std::string&     name,
+	const Eigen::VectorXd& values);
+
+// Coordinates or normals of the prepared points go to all their vertices; the others stay.
+void writePositions(
+	MeshModel&              layer,
+	const LayerPoints&      points,
+	const PreparedCloud&    prepared,
+	const Eigen::Matrix3Xd& unitPositions);
+void writeNormals(
+	MeshModel&              layer,
+	const LayerPoints&      points,
+	const PreparedCloud&    prepared,
+	const Eigen::Matrix3Xd& normals);
+
+// Whether K1 and K2 (PD1 and PD2) on the layer are those the estimate would write.
+bool carriesCurvature(
+	const MeshModel& layer, const LayerPoints& points, const CurvatureEstimate& estimate);
+bool carriesDirections(
+	const MeshModel& layer, const LayerPoints& points, const CurvatureEstimate& estimate);
+// The estimate's field with the layer's directions, made tangent.
+CurvatureField withLayerDirections(
+	const MeshModel& layer, const LayerPoints& points, const CurvatureEstimate& estimate);
+
+// Layers a filter adds. They vanish again unless kept, so a filter that fails leaves none behind.
+class NewLayers {
+public:
+	explicit NewLayers(MeshDocument& document);
+	~NewLayers();
+	NewLayers(const NewLayers&) = delete;
+
+	// An empty layer with the matrix of `source`. No dots in labels: hosts take them for file names.
+	MeshModel& add(const QString& label, const MeshModel& source);
+	void       keep(const MeshModel& current);
+
+private:
+	MeshDocument&    m_document;
+	int              m_current;
+	std::vector<int> m_ids;
+};
+
+} // namespace curvature_lines

@@ -1,0 +1,23 @@
+// Polygon meshes as MeshLab holds them: triangles whose inner edges carry the faux bit on both sides.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <common/ml_document/mesh_document.h>
+
+#include "filter_results.h"
+#include "parameters.h"
+
+#include "core/quad_mesh.h"
+
+namespace curvature_lines {
+
+// Fills an empty layer and returns what it then is.
+MeshTopology
+writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud& frame);
+
+// What the filters that end in a mesh share: parameters triangulate and close_holes, and the counts.
+void            addMeshParameters(RichParameterList& list);
+QuadMeshOptions meshOptions(const Parameters& parameters);
+void            reportMesh(FilterResults& results, const MeshTopology& topology);
+
+} // namespace curvature_lines

@@ -1,0 +1,198 @@
+// Lines of curvature as a layer of vertices and edges, and back.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "polyline_layer.h"
+
+#include <array>
+#include <cmath>
+
+#include <common/mlexception.h>
+
+namespace curvature_lines {
+
+namespace {
+
+using Allocator = vcg::tri::Allocator<CMeshO>;
+
+const char* const sourceAttribute = "curvature_lines_source";
+
+Point3m toPoint(const Eigen::Vector3d& v)
+{
+	return {Scalarm(v.x()), Scalarm(v.y()), Scalarm(v.z())};
+}
+
+Eigen::Vector3d toEigen(const Point3m& p)
+{
+	return {double(p[0]), double(p[1]), double(p[2])};
+}
+
+// Orange and blue, told apart by colour-blind eyes as well.
+vcg::Color4b familyColor(int family)
+{
+	return family == 1 ? vcg::Color4b(213, 94, 0, 255) : vcg::Color4b(0, 114, 178, 255);
+}
+
+void writeEdges(CMeshO& mesh, const LineNetwork& lines)
+{
+	std::vector<std::array<Index, 2>> edges;
+	for (Index l = 0; l < lines.lines(); ++l) {
+		const Index first = lines.offsets[l], last = lines.offsets[l + 1] - 1;
+		for (Index v = first; v < last; ++v)
+			edges.push_back({v, v + 1});
+		if (lines.closed[l] && last - first >= 2)
+			edges.push_back({last, first});
+	}
+	auto edge = Allocator::AddEdges(mesh, edges.size());
+	for (const auto& [from, to] : edges) {
+		edge->V(0) = &mesh.vert[from];
+		edge->V(1) = &mesh.vert[to];
+		++edge;
+	}
+}
+
+// The one or two vertices that edges join to each vertex.
+std::vector<std::vector<Index>> neighborsAlongEdges(const CMeshO& mesh)
+{
+	std::vector<std::vector<Index>> neighbors(mesh.vert.size());
+	for (const CEdgeO& edge : mesh.edge) {
+		if (edge.IsD())
+			continue;
+		const auto a = static_cast<Index>(vcg::tri::Index(mesh, edge.cV(0)));
+		const auto b = static_cast<Index>(vcg::tri::Index(mesh, edge.cV(1)));
+		neighbors[a].push_back(b);
+		neighbors[b].push_back(a);
+	}
+	for (const auto& row : neighbors)
+		if (row.size() > 2)
+			throw MLException(
+				"the lines of the current layer branch; 'Trace Lines of Curvature' makes lines that "
+				"do not.");
+	return neighbors;
+}
+
+// Vertices in order along each line. An open line starts at its end of lower index, a closed one at
+// its lowest vertex towards the lower neighbour: as they were written.
+struct Chains {
+	std::vector<std::vector<Index>> vertices;
+	std::vector<char>               closed;
+};
+
+Chains chainsOf(const CMeshO& mesh)
+{
+	const auto        neighbors = neighborsAlongEdges(mesh);
+	std::vector<char> visited(mesh.vert.size(), 0);
+	Chains            chains;
+	const auto        follow = [&](Index start) {
+		std::vector<Index> chain = {start};
+		visited[start]           = 1;
+		for (Index at = start;;) {
+			Index next = -1;
+			for (const Index n : neighbors[at])
+				if (!visited[n] && (next < 0 || n < next))
+					next = n;
+			if (next < 0)
+				break;
+			visited[next] = 1;
+			chain.push_back(next);
+			at = next;
+		}
+		chains.vertices.push_back(std::move(chain));
+	};
+	const auto count = static_cast<Index>(neighbors.size());
+	for (Index v = 0; v < count; ++v) {
+		// All vertices of a line come before its far end, so the order of the lines stays, too.
+		if (!visited[v] && neighbors[v].size() == 1) {
+			follow(v);
+			chains.closed.push_back(0);
+		}
+	}
+	for (Index v = 0; v < count; ++v)
+		if (!visited[v] && neighbors[v].size() == 2) {
+			follow(v);
+			chains.closed.push_back(1);
+		}
+	return chains;
+}
+
+} // namespace
+
+void writeLines(
+	MeshModel& layer, const LineNetwork& lines, const PreparedCloud& frame, int sourceLayer)
+{
+	layer.updateDataMask(MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR);
+	CMeshO& mesh = layer.cm;
+	Allocator::AddVertices(mesh, lines.vertices.cols());
+	auto id     = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_id");
+	auto family = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_family");
+	for (Index l = 0; l < lines.lines(); ++l)
+		for (Index v = lines.offsets[l]; v < lines.offsets[l + 1]; ++v) {
+			CVertexO& vertex = mesh.vert[v];
+			vertex.P()       = toPoint(frame.toModel(lines.vertices.col(v)));
+			vertex.N()       = toPoint(lines.normals.col(v));
+			vertex.Q()       = Scalarm(lines.curvature[v] / frame.diagonal);
+			vertex.C()       = familyColor(lines.family[l]);
+			id[v]            = Scalarm(l);
+			family[v]        = Scalarm(lines.family[l]);
+		}
+	writeEdges(mesh, lines);
+	Allocator::GetPerMeshAttribute<int>(mesh, sourceAttribute)() = sourceLayer;
+	vcg::tri::UpdateBounding<CMeshO>::Box(mesh);
+}
+
+LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
+{
+	const CMeshO& mesh   = layer.cm;
+	const auto    id     = Allocator::FindPerVertexAttribute<Scalarm>(mesh, "line_id");
+	const auto    family = Allocator::FindPerVertexAttribute<Scalarm>(mesh, "line_family");
+	if (mesh.en == 0 || !Allocator::IsValidHandle(mesh, id) ||
+		!Allocator::IsValidHandle(mesh, family))
+		throw MLException(
+			"the current layer '" + layer.label() +
+			"' holds no lines of curvature (edges with the vertex attributes line_id and "
+			"line_family, which files do not keep). Run 'Trace Lines of Curvature' "
+			"(generate_curvature_lines) on the point cloud first and leave its layer current.");
+
+	Chains chains = chainsOf(mesh);
+	std::vector<std::size_t> order(chains.vertices.size());
+	for (std::size_t l = 0; l < order.size(); ++l)
+		order[l] = l;
+	// In the order they were traced: by confidence.
+	std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+		return chains.vertices[a][0] < chains.vertices[b][0];
+	});
+
+	LineNetwork lines;
+	lines.vertices.resize(3, mesh.vn);
+	lines.normals.resize(3, mesh.vn);
+	lines.curvature.resize(mesh.vn);
+	Index written = 0;
+	for (const std::size_t l : order) {
+		const int lineFamily = int(std::lround(double(family[chains.vertices[l][0]])));
+		if (lineFamily != 1 && lineFamily != 2)
+			throw MLException("the attribute line_family of the current layer must be 1 or 2.");
+		for (const Index v : chains.vertices[l]) {
+			const CVertexO& vertex = mesh.vert[v];
+			lines.vertices.col(written) = frame.toUnit(toEigen(vertex.cP()));
+			lines.normals.col(written)  = toEigen(vertex.cN()).normalized();
+			lines.curvature[written++]  = double(vertex.cQ()) * frame.diagonal;
+		}
+		lines.offsets.push_back(written);
+		lines.family.push_back(lineFamily);
+		lines.closed.push_back(chains.closed[l]);
+	}
+	lines.vertices.conservativeResize(3, written);
+	lines.normals.conservativeResize(3, written);
+	lines.curvature.conservativeResize(written);
+	if (!lines.vertices.allFinite() || (lines.normals.colwise().norm().array() < 0.5).any())
+		throw MLException(
+			"the current layer has vertices without a finite position or normal; trace the lines "
+			"again.");
+	return lines;
+}
+
+int sourceLayerOf(const MeshModel& layer)
+{
+	const auto source = Allocator::FindPerMeshAttribute<int>(layer.cm, sourceAttribute);
+	return Allocator::IsValidHandle(layer.cm, source) ? source() : -1;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,45 @@
+# The same result in every process and for any number of threads.
+# SPDX-License-Identifier: GPL-3.0-or-later
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+
+CHAIN = """
+import hashlib, helpers
+helpers.load_plugin()
+meshes = helpers.layer_of(helpers.generate("torus", 1200, noise=0.003, outliers=0.02, seed=1, scanned=True))
+for name, parameters in [
+    (helpers.CURVATURE, {}),
+    (helpers.OUTLIERS, {"delete_selected": True}),
+    (helpers.DENOISE, {"iterations": 10}),
+    (helpers.SMOOTH, {}),
+    (helpers.TRACE, {"target_vertices": 100}),
+    (helpers.MESH, {}),
+]:
+    meshes.apply_filter(name, **parameters)
+    state = repr(helpers.snapshot(meshes)).encode()
+    print(name, hashlib.sha256(state).hexdigest())
+"""
+
+
+def run(threads):
+    environment = {**os.environ, "OMP_NUM_THREADS": str(threads)}
+    result = subprocess.run(
+        [sys.executable, "-c", CHAIN],
+        cwd=Path(__file__).parent,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    return [line for line in result.stdout.splitlines() if len(line.split()) == 2 and len(line.split()[1]) == 64]
+
+
+def test_chain_is_the_same_for_any_number_of_threads():
+    first = run(1)
+    assert len(first) == 6 and len(set(first)) == 6
+    for threads in (2, 3):
+        assert run(threads) == first

@@ -1,0 +1,337 @@
+# Direction smoothing, lines of curvature, the quad mesh and the whole pipeline through the real plugin.
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pymeshlab
+import pytest
+
+from helpers import (
+    CURVATURE,
+    DENOISE,
+    MESH,
+    PIPELINE,
+    SMOOTH,
+    TRACE,
+    analytic_surfaces,
+    attribute,
+    attributes,
+    axis_angle,
+    check_report,
+    generate,
+    layer,
+    layer_of,
+    polygon_topology,
+    rms,
+    snapshot,
+)
+
+MESH_COUNTS = [
+    "vertices",
+    "faces",
+    "quads",
+    "triangles",
+    "euler_characteristic",
+    "boundary_edges",
+    "nonmanifold_edges",
+    "components",
+]
+EPSILON = 0.005
+
+
+@pytest.fixture(scope="module")
+def traced(torus):
+    """A document with the torus and its lines of curvature; tests that change it must not."""
+    meshes = layer_of(torus)
+    meshes.apply_filter(CURVATURE)
+    report = meshes.apply_filter(TRACE, epsilon=EPSILON)
+    return meshes, report
+
+
+def retrace(torus, **parameters):
+    meshes = layer_of(torus)
+    return meshes, meshes.apply_filter(TRACE, **{"epsilon": EPSILON, **parameters})
+
+
+def distances(name, positions):
+    return np.linalg.norm(positions - analytic_surfaces.project(name, positions)["foot_points"], axis=1)
+
+
+def check_mesh(meshes, report):
+    """The polygons on the layer are what the dictionary says, counted from scratch."""
+    mesh = meshes.current_mesh()
+    polygons = mesh.polygonal_face_list()
+    euler, boundary, nonmanifold = polygon_topology(polygons, mesh.vertex_number())
+    sides = [len(polygon) for polygon in polygons]
+    assert report["vertices"] == mesh.vertex_number() and report["faces"] == len(polygons)
+    assert report["quads"] == sides.count(4) and report["triangles"] == sides.count(3)
+    assert (report["euler_characteristic"], report["boundary_edges"], report["nonmanifold_edges"]) == (
+        euler,
+        boundary,
+        nonmanifold,
+    )
+    np.testing.assert_allclose(np.linalg.norm(mesh.vertex_normal_matrix(), axis=1), 1.0, atol=1e-6)
+    return mesh, polygons
+
+
+# Direction smoothing
+
+
+def test_smoothing_improves_directions_and_only_them(noisy_torus):
+    meshes = layer_of(noisy_torus)
+    meshes.apply_filter(CURVATURE)
+    before, rough = attributes(meshes), meshes.current_mesh().vertex_curvature_principal_dir1_matrix()
+    report = check_report(meshes.apply_filter(SMOOTH), "iterations")
+    smooth = meshes.current_mesh().vertex_curvature_principal_dir1_matrix()
+    clear = noisy_torus["k1"] - noisy_torus["k2"] > 1.0
+    assert rms(axis_angle(smooth, noisy_torus["d1"])[clear]) < rms(axis_angle(rough, noisy_torus["d1"])[clear])
+    for name in ("curv_k1", "curv_k2", "curv_confidence"):
+        np.testing.assert_array_equal(before[name], attribute(meshes, name))
+    assert report["curvature_reused"] and report["energy_final"] < report["energy_initial"]
+    other = meshes.current_mesh().vertex_curvature_principal_dir2_matrix()
+    frames = np.stack([smooth, other, noisy_torus["input_normals"]], axis=1)
+    np.testing.assert_allclose(frames @ frames.transpose(0, 2, 1), np.tile(np.eye(3), (len(smooth), 1, 1)), atol=1e-9)
+
+
+def test_smoothness_zero_keeps_the_directions(noisy_torus):
+    meshes = layer_of(noisy_torus)
+    meshes.apply_filter(CURVATURE)
+    rough = meshes.current_mesh().vertex_curvature_principal_dir1_matrix()
+    report = meshes.apply_filter(SMOOTH, alpha=0.0)
+    kept = meshes.current_mesh().vertex_curvature_principal_dir1_matrix()
+    assert np.max(axis_angle(rough, kept)) < 1e-3 and report["mean_turn"] < 1e-3
+
+
+def test_smoothing_computes_what_is_missing(noisy_torus):
+    alone, chained = layer_of(noisy_torus), layer_of(noisy_torus)
+    chained.apply_filter(CURVATURE)
+    chained.apply_filter(SMOOTH)
+    alone.apply_filter(SMOOTH)
+    for name, values in attributes(chained).items():
+        np.testing.assert_array_equal(values, attribute(alone, name))
+    np.testing.assert_array_equal(
+        alone.current_mesh().vertex_curvature_principal_dir1_matrix(),
+        chained.current_mesh().vertex_curvature_principal_dir1_matrix(),
+    )
+
+
+# Lines
+
+
+def test_lines_lie_on_the_torus_and_follow_its_directions(torus, traced):
+    meshes, report = traced
+    check_report(report, "lines", "vertices", "edges", "closed_lines", "lines_family_1", "lines_family_2")
+    assert [mesh.label() for mesh in meshes][1] == "lines of curvature" and meshes.current_mesh_id() == 1
+    mesh = meshes.current_mesh()
+    assert (mesh.vertex_number(), mesh.edge_number()) == (report["vertices"], report["edges"])
+    assert rms(distances("torus", mesh.vertex_matrix())) < 0.002 * analytic_surfaces.surface("torus").diagonal
+
+    edges, family = mesh.edge_matrix(), attribute(meshes, "line_family")
+    truth = analytic_surfaces.project("torus", mesh.vertex_matrix())
+    along = mesh.vertex_matrix()[edges[:, 1]] - mesh.vertex_matrix()[edges[:, 0]]
+    lengths = np.linalg.norm(along, axis=1)
+    expected = np.where((family == 1)[:, None], truth["d1"], truth["d2"])[edges[:, 0]]
+    sound = lengths > 0.1 * np.median(lengths)
+    assert np.median(axis_angle(along / np.maximum(lengths, 1e-30)[:, None], expected)[sound]) < 0.1
+
+
+def test_line_layer_attributes(traced):
+    meshes, report = traced
+    mesh = meshes.current_mesh()
+    line, family = attribute(meshes, "line_id"), attribute(meshes, "line_family")
+    assert set(np.unique(line)) == set(range(report["lines"])) and set(np.unique(family)) == {1.0, 2.0}
+    firsts = np.unique(line, return_index=True)[1]
+    assert np.sum(family[firsts] == 1) == report["lines_family_1"]
+    assert np.sum(family[firsts] == 2) == report["lines_family_2"]
+    edges = mesh.edge_matrix()
+    assert np.all(line[edges[:, 0]] == line[edges[:, 1]])
+    assert np.bincount(edges.ravel(), minlength=mesh.vertex_number()).max() == 2
+    open_lines = report["lines"] - report["closed_lines"]
+    assert report["vertices"] - report["edges"] == open_lines
+    truth = analytic_surfaces.project("torus", mesh.vertex_matrix())
+    curvature = np.where(family == 1, truth["k1"], truth["k2"])
+    assert np.median(np.abs(mesh.vertex_scalar_array() - curvature)) < 0.1
+    cosine = np.einsum("ij,ij->i", mesh.vertex_normal_matrix(), truth["normals"])
+    assert np.median(cosine) > 0.999
+    assert len(np.unique(mesh.vertex_color_matrix(), axis=0)) == 2
+
+
+def test_tracing_leaves_the_cloud_untouched(torus):
+    meshes = layer_of(torus)
+    before = snapshot(meshes)
+    meshes.apply_filter(TRACE, epsilon=EPSILON)
+    meshes.set_current_mesh(0)
+    assert snapshot(meshes)[1 : len(before)] == before[1:]
+
+
+def test_density_parameters(torus, traced):
+    vertices = traced[1]["vertices"]
+    assert retrace(torus, epsilon=0.02)[1]["vertices"] < vertices
+    spacing = 0.6
+    wide = retrace(torus, min_spacing=spacing, max_spacing=spacing)[1]
+    assert wide["lines"] < traced[1]["lines"]
+    aimed = retrace(torus, target_vertices=120)
+    report = aimed[0].apply_filter(MESH)
+    assert 0.6 * 120 < report["vertices"] < 1.6 * 120
+    assert aimed[1]["epsilon"] != pytest.approx(EPSILON)
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [{"projection": "Locally Optimal"}, {"projection": "Weighted Average"}, {"tolerance": 0.001}, {"smooth_directions": False}],
+)
+def test_tracing_options_have_an_effect(torus, traced, parameters):
+    meshes, report = retrace(torus, **parameters)
+    default, other = traced[0].mesh(1).vertex_matrix(), meshes.mesh(1).vertex_matrix()
+    assert default.shape != other.shape or np.any(default != other)
+    assert rms(distances("torus", other)) < 0.01 * analytic_surfaces.surface("torus").diagonal
+
+
+def test_smoothed_directions_of_the_layer_are_followed(noisy_torus):
+    positions = []
+    for smoothness in (0.1, 0.9):
+        meshes = layer_of(noisy_torus)
+        meshes.apply_filter(CURVATURE)
+        meshes.apply_filter(SMOOTH, alpha=smoothness)
+        report = meshes.apply_filter(TRACE, epsilon=0.01)
+        assert report["curvature_reused"] and "seconds_smoothing" not in report
+        positions.append(meshes.mesh(1).vertex_matrix())
+    assert positions[0].shape != positions[1].shape or np.any(positions[0] != positions[1])
+
+
+def test_stale_curvature_is_recomputed(torus):
+    meshes = layer_of(torus)
+    meshes.apply_filter(CURVATURE)
+    meshes.compute_matrix_from_scaling_or_normalization(axisx=2, uniformflag=True, scalecenter="origin", freeze=True)
+    report = meshes.apply_filter(TRACE, epsilon=EPSILON)
+    assert not report["curvature_reused"]
+    fresh = layer(2.0 * torus["positions"], torus["normals"])
+    expected = fresh.apply_filter(TRACE, epsilon=EPSILON)
+    assert (report["lines"], report["vertices"]) == (expected["lines"], expected["vertices"])
+
+
+# Mesh
+
+
+def test_mesh_of_the_torus(torus, traced):
+    meshes, _ = retrace(torus)
+    report = check_report(meshes.apply_filter(MESH), *MESH_COUNTS)
+    mesh, polygons = check_mesh(meshes, report)
+    assert mesh.label() == "curvature-aligned mesh" and meshes.current_mesh_id() == 2
+    assert report["euler_characteristic"] == 0 and report["nonmanifold_edges"] == 0 and report["components"] == 1
+    assert report["quads"] > 0.6 * report["faces"]
+    assert rms(distances("torus", mesh.vertex_matrix())) < 0.002 * analytic_surfaces.surface("torus").diagonal
+    truth = analytic_surfaces.project("torus", mesh.vertex_matrix())["normals"]
+    assert np.all(np.einsum("ij,ij->i", mesh.vertex_normal_matrix(), truth) > 0.9)
+    # counter-clockwise from outside
+    centers = np.array([mesh.vertex_matrix()[face].mean(axis=0) for face in mesh.face_matrix()])
+    outward = analytic_surfaces.project("torus", centers)["normals"]
+    assert np.all(np.einsum("ij,ij->i", mesh.face_normal_matrix(), outward) > 0.5)
+
+
+def test_triangulated_mesh_covers_the_same_surface(torus):
+    meshes, _ = retrace(torus)
+    polygonal = meshes.apply_filter(MESH)
+    area = meshes.get_geometric_measures()["surface_area"]
+    meshes.set_current_mesh(1)
+    report = meshes.apply_filter(MESH, triangulate=True)
+    check_mesh(meshes, report)
+    assert report["triangles"] == report["faces"] and report["quads"] == 0
+    assert report["euler_characteristic"] == polygonal["euler_characteristic"]
+    assert meshes.get_geometric_measures()["surface_area"] == pytest.approx(area, rel=0.02)
+
+
+def test_polygons_survive_an_obj_file(torus, tmp_path):
+    meshes, _ = retrace(torus)
+    report = meshes.apply_filter(MESH)
+    meshes.save_current_mesh(str(tmp_path / "quads.obj"))
+    faces = [line for line in (tmp_path / "quads.obj").read_text().splitlines() if line.startswith("f ")]
+    sides = [len(line.split()) - 1 for line in faces]
+    assert len(faces) == report["faces"] and sides.count(4) == report["quads"]
+
+
+def test_lines_survive_an_obj_file_but_not_their_attributes(traced, tmp_path):
+    meshes, report = traced
+    meshes.save_current_mesh(str(tmp_path / "lines.obj"))
+    loaded = pymeshlab.MeshSet()
+    loaded.load_new_mesh(str(tmp_path / "lines.obj"))
+    assert loaded.current_mesh().edge_number() == report["edges"]
+    with pytest.raises(pymeshlab.PyMeshLabException, match="line_id"):
+        loaded.add_mesh(meshes.mesh(0))
+        loaded.set_current_mesh(0)
+        loaded.apply_filter(MESH, point_cloud=1)
+
+
+def test_mesh_finds_its_cloud_among_others(torus):
+    meshes = layer_of(generate("sphere", 500, seed=1))
+    meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=torus["positions"], v_normals_matrix=torus["normals"]))
+    meshes.apply_filter(TRACE, epsilon=EPSILON)
+    found = meshes.apply_filter(MESH)
+    meshes.set_current_mesh(2)
+    named = meshes.apply_filter(MESH, point_cloud=1)
+    assert {k: v for k, v in found.items() if "seconds" not in k} == {k: v for k, v in named.items() if "seconds" not in k}
+
+
+# Pipeline
+
+
+def test_pipeline_on_a_dirty_scan():
+    cloud = generate("torus", 2000, noise=0.0025, outliers=0.03, seed=4, scanned=True)
+    meshes = layer_of(cloud)
+    before = snapshot(meshes)
+    report = check_report(meshes.apply_filter(PIPELINE), "outliers", "lines", *MESH_COUNTS)
+    assert snapshot(meshes)[1 : len(before)] == before[1:]
+    assert meshes.mesh_number() == 2 and meshes.current_mesh().label() == "curvature-aligned mesh"
+    mesh, _ = check_mesh(meshes, report)
+    assert report["nonmanifold_edges"] == 0 and not report["normals_estimated"]
+    assert report["quads"] >= 0.5 * report["faces"]
+    assert 0.5 * 2000 / 16 < report["vertices"] < 2.0 * 2000 / 16
+    assert rms(distances("torus", mesh.vertex_matrix())) < 0.0025 * analytic_surfaces.surface("torus").diagonal
+    assert {"seconds_curvature", "seconds_outliers", "seconds_denoising", "seconds_tracing", "seconds_mesh"} <= set(report)
+
+
+def test_pipeline_keeps_intermediate_layers(torus):
+    meshes = layer_of(torus)
+    meshes.apply_filter(PIPELINE, denoise=False, keep_intermediate_layers=True)
+    labels = [mesh.label() for mesh in meshes]
+    assert labels[1:] == ["cleaned cloud", "lines of curvature", "curvature-aligned mesh"]
+    assert meshes.current_mesh_id() == 3
+    cleaned = meshes.mesh(1)
+    truth = analytic_surfaces.project("torus", cleaned.vertex_matrix())
+    k1 = cleaned.vertex_custom_scalar_attribute_array("curv_k1")
+    assert np.median(np.abs(k1 - truth["k1"])) < 0.1
+    assert cleaned.vertex_curvature_principal_dir1_matrix().shape == (cleaned.vertex_number(), 3)
+    meshes.set_current_mesh(2)
+    report = meshes.apply_filter(MESH)
+    assert report["vertices"] == meshes.mesh(3).vertex_number()
+
+
+@pytest.mark.parametrize("choice, normals, estimated", [("If Missing", False, True), ("If Missing", True, False), ("Always", True, True)])
+def test_pipeline_estimates_normals(torus, choice, normals, estimated):
+    meshes = layer(torus["positions"], torus["normals"] if normals else None)
+    report = meshes.apply_filter(PIPELINE, denoise=False, reject_outliers=False, estimate_normals=choice)
+    assert report["normals_estimated"] is estimated and report["faces"] > 50
+    truth = analytic_surfaces.project("torus", meshes.current_mesh().vertex_matrix())["normals"]
+    assert np.all(np.einsum("ij,ij->i", meshes.current_mesh().vertex_normal_matrix(), truth) > 0.5)
+
+
+def test_pipeline_without_normals_is_refused_when_told_not_to_estimate(torus):
+    meshes = layer(torus["positions"])
+    with pytest.raises(pymeshlab.PyMeshLabException, match="Compute normals for point sets"):
+        meshes.apply_filter(PIPELINE, estimate_normals="Never")
+    assert meshes.mesh_number() == 1
+
+
+def test_pipeline_density(torus):
+    counts = []
+    for parameters in ({"target_vertices": 60}, {"target_vertices": 200}, {"epsilon": 0.02}):
+        counts.append(layer_of(torus).apply_filter(PIPELINE, denoise=False, reject_outliers=False, **parameters)["vertices"])
+    assert 40 < counts[0] < 90 and 130 < counts[1] < 300 and counts[2] < counts[1]
+
+
+def test_chain_of_single_filters(noisy_torus):
+    meshes = layer_of(noisy_torus)
+    for name, parameters in [(DENOISE, {"iterations": 30}), (CURVATURE, {}), (SMOOTH, {}), (TRACE, {"target_vertices": 120}), (MESH, {})]:
+        report = meshes.apply_filter(name, **parameters)
+    mesh, _ = check_mesh(meshes, report)
+    assert meshes.mesh_number() == 3 and report["nonmanifold_edges"] == 0
+    noise = rms(distances("torus", noisy_torus["positions"]))
+    assert rms(distances("torus", mesh.vertex_matrix())) < 0.5 * noise

@@ -22,8 +22,8 @@ struct StepFailed : std::runtime_error {
 	using std::runtime_error::runtime_error;
 };
 
-// Eigen's parallel matrix product gives sums that depend on the number of threads, and its threads wait
-// for each other in busy loops that stall for minutes on a loaded machine.
+// Eigen's parallel matrix product gives sums that depend on the number of threads, and its threads
+// wait for each other in busy loops that stall for minutes on a loaded machine.
 class SerialProducts {
 public:
 	SerialProducts() : m_threads(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
@@ -97,10 +97,10 @@ struct CountingLineSearch {
 
 using DlibVector = dlib::matrix<double, 0, 1>;
 
-// dlib's conjugate gradients know no bounds. They see the objective of the closest point of the box,
-// which is continuous and constant along every bound that has been passed. And their line search tries
-// the whole gradient first, which in a rough objective lands in another valley: it is scaled to a
-// small part of the box.
+// dlib's conjugate gradients know no bounds. They see the objective of the closest point of the
+// box, which is continuous and constant along every bound that has been passed. And their line
+// search tries the whole gradient first, which in a rough objective lands in another valley: it is
+// scaled to a small part of the box.
 class ClampedObjective {
 public:
 	ClampedObjective(Guard& guard, const Box& box) : m_guard(guard), m_box(box)

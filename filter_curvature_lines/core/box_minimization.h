@@ -22,8 +22,9 @@ struct Minimum {
 	Index  iterations = 0;
 };
 
-// `start` lies in the box. Both stop after maxIterations, or when an iteration gains less than 1e-9 of
-// the value. Progress reports, and can cancel, once per iteration.
+// `start` lies in the box, which must be finite for Polak-Ribiere. Both stop after maxIterations,
+// or when an iteration gains less than 1e-9 of the value. Progress reports, and can cancel, once
+// per iteration.
 Minimum minimizeLbfgsB(
 	const Objective&       objective,
 	const Eigen::VectorXd& start,

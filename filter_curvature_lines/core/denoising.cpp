@@ -15,6 +15,7 @@ namespace {
 
 constexpr Index  neighborCount = 6;    // K of A09 section 4.2
 constexpr double minSine       = 0.05; // thinner triangles have no stable normal
+constexpr Index  minParallel   = 8192; // points, below which waking threads costs more than they save
 constexpr double minCrossRatio = 1e-3; // a triangle that collapses later keeps a finite gradient
 
 NeighborLists nearestNeighbors(
@@ -43,6 +44,16 @@ NeighborLists placesOf(const NeighborLists& lists, Index points)
 	for (std::size_t place = 0; place < lists.indices.size(); ++place)
 		places.indices[next[lists.indices[place]]++] = static_cast<Index>(place);
 	return places;
+}
+
+// An evaluation takes microseconds per point and there are hundreds of them.
+template<class Body>
+void forEachPoint(Index points, const Body& body)
+{
+	if (points >= minParallel)
+		return parallelFor(points, {}, body);
+	for (Index i = 0; i < points; ++i)
+		body(i);
 }
 
 struct Cost {
@@ -133,8 +144,8 @@ double DenoisingEnergy::operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gr
 {
 	const Index points = static_cast<Index>(m_normals.cols());
 	gradient.resize(x.size());
-	parallelFor(points, {}, [&](Index i) { m_fanEnergies[i] = evaluateFan(i, x); });
-	parallelFor(points, {}, [&](Index i) {
+	forEachPoint(points, [&](Index i) { m_fanEnergies[i] = evaluateFan(i, x); });
+	forEachPoint(points, [&](Index i) {
 		Eigen::Vector3d sum = Eigen::Vector3d::Zero();
 		for (const Index place : m_uses[i])
 			sum += m_pulls.col(place);

@@ -33,15 +33,16 @@ DenoisingResult denoise(
 	const DenoisingOptions&     options  = {},
 	const Progress&             progress = {});
 
-// The energy and its analytic gradient, exposed so that tests can difference it. Degenerate triangles
-// (sine of the angle at p below 0.05 at the start) take no part; orientation signs s are those of `start`.
+// The energy and its analytic gradient, exposed so that tests can difference it. Degenerate
+// triangles (sine of the angle at p below 0.05 at the start) take no part; orientation signs s are
+// those of `start`.
 class DenoisingEnergy {
 public:
 	DenoisingEnergy(
 		const PointCloud& start, const NeighborLists& neighbors, const DenoisingOptions& options);
 
-	// x: 3N stacked positions; gradient: resized to 3N. Returns E. Same result for any number of threads.
-	// Not const: the work space is kept between calls.
+	// x: 3N stacked positions; gradient: resized to 3N. Returns E. Same result for any number of
+	// threads. Not const: the work space is kept between calls.
 	double operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gradient);
 
 private:

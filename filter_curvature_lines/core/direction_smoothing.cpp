@@ -23,8 +23,8 @@ constexpr Index  maxPartners      = 32;   // of one point's own choice; bounds m
 constexpr double startShift       = 1e-3; // keeps the linear start well-posed without a data term
 constexpr int    linearIterations = 200;
 
-// The points with positive weight at i, on the same face, by index. Of a larger region every m-th one: the same reach
-// at a fraction of the pairs.
+// The points with positive weight at i, on the same face, by index. Of a larger region every m-th
+// one: the same reach at a fraction of the pairs.
 std::vector<Index> partnersOf(const PointCloud& cloud, const StatisticalWeights& weights, Index i)
 {
 	std::vector<Index> partners;
@@ -59,7 +59,8 @@ NeighborLists transposed(const NeighborLists& lists)
 	return result;
 }
 
-// The union with the transposed relation, and every point itself: the pattern of a symmetric matrix.
+// The union with the transposed relation, and every point itself: the pattern of a symmetric
+// matrix.
 NeighborLists symmetrized(const NeighborLists& lists)
 {
 	const NeighborLists             others = transposed(lists);
@@ -75,9 +76,10 @@ NeighborLists symmetrized(const NeighborLists& lists)
 	return NeighborLists::fromRows(rows);
 }
 
-// phi_ij: theta_i - theta_j of parallel directions, after the smallest rotation between the tangent planes.
-// A09 measures theta_i and theta_j against the projection of p_i - p_j in each plane. To first order this is
-// the same, but where the surface bends or twists that chord is not parallel to itself at its two ends.
+// phi_ij: theta_i - theta_j of parallel directions, after the smallest rotation between the tangent
+// planes. A09 measures theta_i and theta_j against the projection of p_i - p_j in each plane. To
+// first order this is the same, but where the surface bends or twists that chord is not parallel to
+// itself at its two ends.
 double transportAngle(const TangentFrame& a, const TangentFrame& b)
 {
 	const Eigen::Vector3d u =
@@ -85,8 +87,9 @@ double transportAngle(const TangentFrame& a, const TangentFrame& b)
 	return -std::atan2(u.dot(b.v), u.dot(b.u));
 }
 
-// How well determined a direction is: 0 at an umbilic and 2 where k1 = -k2, in place of A09's |k1| / |k2|,
-// which is 1 at umbilics and unbounded on cylinders. The error keeps flat, noisy points from counting.
+// How well determined a direction is: 0 at an umbilic and 2 where k1 = -k2, in place of A09's |k1|
+// / |k2|, which is 1 at umbilics and unbounded on cylinders. The error keeps flat, noisy points
+// from counting.
 double anisotropy(const CurvatureField& field, Index i)
 {
 	if (field.status[i] == PointStatus::TooFewNeighbors || field.status[i] == PointStatus::Invalid)
@@ -155,7 +158,8 @@ void DirectionEnergy::buildCoupling(
 
 double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const
 {
-	// cos^2 psi = (1 + cos 2 psi) / 2, and w_ij cos 2 psi_ij is the real part of conj(u_i) H_ij u_j.
+	// cos^2 psi = (1 + cos 2 psi) / 2, and w_ij cos 2 psi_ij is the real part of conj(u_i) H_ij
+	// u_j.
 	const Eigen::VectorXcd u = doubledAngles(theta);
 	const Eigen::VectorXcd y = m_coupling * u;
 	gradient.resize(theta.size());
@@ -170,10 +174,11 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 	return (1.0 - m_alpha) * data - m_alpha * 0.25 * agreement;
 }
 
-// With sin^2(theta - theta0) = |u - u0|^2 / 4 and -cos^2 psi = |u_i - e^(2 i phi) u_j|^2 / 4 - 1 the minimum solves
+// With sin^2(theta - theta0) = |u - u0|^2 / 4 and -cos^2 psi = |u_i - e^(2 i phi) u_j|^2 / 4 - 1
+// the minimum solves
 //   ((1 - alpha) Omega + alpha (D - H)) u = (1 - alpha) Omega u0.
-// The shift acts only where there is no data term (planes, alpha = 1); the solution is then one step of the
-// inverse power method towards the smoothest field, started at the input.
+// The shift acts only where there is no data term (planes, alpha = 1); the solution is then one
+// step of the inverse power method towards the smoothest field, started at the input.
 Eigen::VectorXd DirectionEnergy::linearStart() const
 {
 	using Single = std::complex<float>; // for a start single precision does, at half the memory

@@ -30,7 +30,8 @@ DirectionSmoothingResult smoothDirections(
 
 // A09's energy in the angles theta (N) against frames TangentFrame(n_i), and its gradient:
 //   (1 - alpha) sum_i omega_i sin^2(theta_i - theta0_i) - alpha sum_{i,j} w_ij cos^2(theta_i - theta_j - phi_ij)
-// over unordered pairs with W_i[j] > 0 or W_j[i] > 0, each counted once, w_ij = 1 / degree_i + 1 / degree_j.
+// over unordered pairs with W_i[j] > 0 or W_j[i] > 0, each counted once, w_ij = 1 / degree_i + 1 /
+// degree_j.
 class DirectionEnergy {
 public:
 	DirectionEnergy(
@@ -42,7 +43,8 @@ public:
 	double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const;
 
 	const Eigen::VectorXd& initialAngles() const { return m_theta0; }
-	// Near the minimum: the energy is quadratic in u_i = exp(2 i theta_i) once |u_i| = 1 is given up.
+	// Near the minimum: the energy is quadratic in u_i = exp(2 i theta_i) once |u_i| = 1 is given
+	// up.
 	Eigen::VectorXd linearStart() const;
 
 private:

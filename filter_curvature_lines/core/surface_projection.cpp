@@ -25,7 +25,8 @@ constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
 constexpr double maxNormalTurn  = 0.5;  // tangent of the turn by which curvature may correct a normal
 constexpr double flatShare      = 1e-3; // see principalDirection()
 
-// The points with positive statistical weight at `closest`, and itself. Read in place: nothing is copied.
+// The points with positive statistical weight at `closest`, and itself. Read in place: nothing is
+// copied.
 class Support {
 public:
 	Support(const PointCloud& cloud, const CurvatureField& field, Index closest) :
@@ -39,8 +40,8 @@ public:
 			weight += w;
 			moment += w * (cloud.positions.col(j) - cloud.positions.col(closest)).squaredNorm();
 		});
-		// Of the uniform disk with this second moment. Unlike the largest distance it hardly jumps from
-		// one cell to the next, and with it what is interpolated.
+		// Of the uniform disk with this second moment. Unlike the largest distance it hardly jumps
+		// from one cell to the next, and with it what is interpolated.
 		m_radius = std::sqrt(2.0 * moment / weight);
 	}
 
@@ -56,8 +57,9 @@ public:
 				visit(m_row[k], m_weights[k]);
 	}
 
-	// visit(j, statistical weight x Gaussian of the distance to `center`, that distance squared). The
-	// Gaussian is relative to the closest point's, so far from the cloud it does not become 0 everywhere.
+	// visit(j, statistical weight x Gaussian of the distance to `center`, that distance squared).
+	// The Gaussian is relative to the closest point's, so far from the cloud it does not become 0
+	// everywhere.
 	template<class Visit>
 	void forEachNear(const Vector3d& center, double ratio, const Visit& visit) const
 	{
@@ -110,8 +112,9 @@ Means meansAt(
 	return means;
 }
 
-// On a curved surface the average of the points lies k s^2 / 2 inside and that of their tangent planes as
-// far outside: projecting along half of each normal, n_j, and half of the mean one cancels the two.
+// On a curved surface the average of the points lies k s^2 / 2 inside and that of their tangent
+// planes as far outside: projecting along half of each normal, n_j, and half of the mean one
+// cancels the two.
 Vector3d projectMixed(const PointCloud& cloud, const Support& support, Vector3d c)
 {
 	for (int pass = 0; pass < mixedPasses; ++pass) {
@@ -121,8 +124,9 @@ Vector3d projectMixed(const PointCloud& cloud, const Support& support, Vector3d 
 	return c;
 }
 
-// x <- sum_j p_j theta(r_j)/r_j / sum_j theta(r_j)/r_j, from the theta-weighted mean. Only the component
-// along the normal is applied: the rest slides the point towards the data by up to a spacing.
+// x <- sum_j p_j theta(r_j)/r_j / sum_j theta(r_j)/r_j, from the theta-weighted mean. Only the
+// component along the normal is applied: the rest slides the point towards the data by up to a
+// spacing.
 Vector3d projectLocallyOptimal(const PointCloud& cloud, const Support& support, Vector3d c)
 {
 	for (int pass = 0; pass <= optimalPasses; ++pass) {
@@ -144,8 +148,9 @@ bool hasCurvature(PointStatus status)
 	return status != PointStatus::TooFewNeighbors && status != PointStatus::Invalid;
 }
 
-// The mean of the normals belongs to the mean of the points, which is beside c by a share of the spacing.
-// So each point gives the normal that its own curvature predicts at c: n_j + dN_j (c - p_j).
+// The mean of the normals belongs to the mean of the points, which is beside c by a share of the
+// spacing. So each point gives the normal that its own curvature predicts at c: n_j + dN_j (c -
+// p_j).
 Vector3d normalAt(
 	const PointCloud& cloud, const CurvatureField& field, const Support& support, const Vector3d& c)
 {
@@ -162,8 +167,8 @@ Vector3d normalAt(
 	return (mean + turn).normalized();
 }
 
-// exp(2 i angle) of a direction tangent at m, after the smallest rotation that takes m to frame.n. Projecting
-// it instead would shorten it, and with it the curvature, by the square of the cosine.
+// exp(2 i angle) of a direction tangent at m, after the smallest rotation that takes m to frame.n.
+// Projecting it instead would shorten it, and with it the curvature, by the square of the cosine.
 Vector2d doubledAngle(const TangentFrame& frame, const Vector3d& m, const Vector3d& direction)
 {
 	const double   cosine  = std::max(frame.n.dot(m), -0.999);
@@ -172,8 +177,8 @@ Vector2d doubledAngle(const TangentFrame& frame, const Vector3d& m, const Vector
 	return {d.x() * d.x() - d.y() * d.y(), 2.0 * d.x() * d.y()};
 }
 
-// Mean of k1 e1 e1^T + k2 e2 e2^T in a tangent plane: the isotropic part, and the deviator as a vector of
-// twice the angle, of length k1 - k2.
+// Mean of k1 e1 e1^T + k2 e2 e2^T in a tangent plane: the isotropic part, and the deviator as a
+// vector of twice the angle, of length k1 - k2.
 struct TensorMean {
 	double   weight = 0.0, mean = 0.0, magnitude = 0.0;
 	Vector2d deviator = Vector2d::Zero(), line = Vector2d::Zero();
@@ -206,8 +211,8 @@ TensorMean tensorMean(
 	return t;
 }
 
-// Where k1 - k2 vanishes (planes, umbilic regions) the tensor has no directions but the field may still
-// have: a small share of the plain mean of its lines takes over, without a jump.
+// Where k1 - k2 vanishes (planes, umbilic regions) the tensor has no directions but the field may
+// still have: a small share of the plain mean of its lines takes over, without a jump.
 Vector3d principalDirection(
 	const TensorMean& t, const TangentFrame& frame, double radius, const Vector3d& fallback)
 {

@@ -21,9 +21,9 @@ struct SurfaceSample {
 	Index  closest = -1;     // the cloud point whose statistical weights were used (given by the caller)
 };
 
-// `closest`: the cloud point nearest to `position` (its Voronoi cell). The support are the points with
-// positive statistical weight there, and itself; opposing normals are left out. Where the support is
-// empty the closest point's own tangent plane serves. Never returns NaN.
+// `closest`: the cloud point nearest to `position` (its Voronoi cell). The support are the points
+// with positive statistical weight there, and itself; opposing normals are left out. Where the
+// support is empty the closest point's own tangent plane serves. Never returns NaN.
 SurfaceSample projectToSurface(
 	const PointCloud&      cloud,
 	const CurvatureField&  field,

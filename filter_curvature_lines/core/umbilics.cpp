@@ -84,7 +84,8 @@ private:
 	std::vector<Index> m_parent;
 };
 
-// Numbers the components of umbilic points, those of at least minRegion points, by their first point.
+// Numbers the components of umbilic points, those of at least minRegion points, by their first
+// point.
 void labelRegions(
 	const PointCloud&           cloud,
 	const MinimumNeighborhoods& minimum,
@@ -176,8 +177,9 @@ double smallestProjection(const PointCloud& cloud, const Region& region, const V
 	return smallest;
 }
 
-// A square face has no long axis, and PCA would turn the lines on it at random. The next moment with axes at
-// right angles is that of (x + iy)^4: it points away from the sides of a square and vanishes on a disk.
+// A square face has no long axis, and PCA would turn the lines on it at random. The next moment
+// with axes at right angles is that of (x + iy)^4: it points away from the sides of a square and
+// vanishes on a disk.
 bool fourfoldAxis(const PointCloud& cloud, const Region& region, const Axes& axes, Vector3d& axis)
 {
 	if (axes.variances[1] < degenerateAxes * axes.variances[0])
@@ -205,8 +207,8 @@ bool fourfoldAxis(const PointCloud& cloud, const Region& region, const Axes& axe
 	return true;
 }
 
-// The axis whose projections to the region's tangent planes serve as d1. One axis for a whole region
-// keeps its directions parallel; n x d1 is the other direction.
+// The axis whose projections to the region's tangent planes serve as d1. One axis for a whole
+// region keeps its directions parallel; n x d1 is the other direction.
 Vector3d regionAxis(const PointCloud& cloud, const Region& region)
 {
 	const Axes axes = principalAxes(cloud, region);

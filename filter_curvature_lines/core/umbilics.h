@@ -16,16 +16,16 @@ struct UmbilicRegions {
 	std::vector<char>  umbilic;  // N
 	std::vector<Index> region;   // N, region id or -1
 	Index              regions = 0;
-	// PCA directions of every region point (projected eigenvectors of the region and its non-umbilic
-	// neighbours); other points keep the field's.
+	// PCA directions of every region point (projected eigenvectors of the region and its
+	// non-umbilic neighbours); other points keep the field's.
 	Eigen::Matrix3Xd d1, d2;
 	// Where the projected eigenvector nearly vanishes (poles of a sphere) there is no direction.
 	std::vector<char>  singular; // N
 };
 
-// Same sign and ratio above options.ratio, or flat (both curvatures below 0.02 / (3 h) + 2 errors), or
-// statistically equal. Opposite signs are never umbilic by ratio. The flag is median-filtered over the
-// minimum neighbourhood.
+// Same sign and ratio above options.ratio, or flat (both curvatures below 0.02 / (3 h) + 2 errors),
+// or statistically equal. Opposite signs are never umbilic by ratio. The flag is median-filtered
+// over the minimum neighbourhood.
 UmbilicRegions findUmbilics(
 	const PointCloud&           cloud,
 	const CurvatureField&       field,

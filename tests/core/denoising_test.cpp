@@ -264,9 +264,9 @@ TEST(Denoising, WithoutIterationsReturnsTheInput)
 
 TEST(Denoising, SameResultForAnyNumberOfThreads)
 {
-	const PointCloud cloud = noisyCloud(requestOf("torus", 2000, 0.01));
+	const PointCloud cloud = noisyCloud(requestOf("torus", 10000, 0.003)); // enough to go parallel
 	DenoisingOptions options;
-	options.iterations = 15;
+	options.iterations = 10;
 	const int threads  = omp_get_max_threads();
 	omp_set_num_threads(1);
 	const auto one = denoised(cloud, options);

@@ -82,7 +82,8 @@ TEST(DirectionEnergy, GradientMatchesFiniteDifferences)
 	}
 }
 
-// A09's formula, written out: with the angle of the projected chord in each plane instead of the transport.
+// A09's formula, written out: with the angle of the projected chord in each plane instead of the
+// transport.
 TEST(DirectionEnergy, AgreesWithThePublishedChordAngles)
 {
 	const ExactCloud exact = noisyDirections("sphere", 0.0, 4000);
@@ -224,7 +225,8 @@ TEST(DirectionSmoothing, FollowsRigidMotionAndOrderOfPoints)
 
 TEST(DirectionSmoothing, NothingCrossesAnEdge)
 {
-	// Two faces of a cube with contradicting fields, in weights that (wrongly) reach across the edge.
+	// Two faces of a cube with contradicting fields, in weights that (wrongly) reach across the
+	// edge.
 	ExactCloud exact = noisyDirections("cube", 0.0, 1500);
 	exact.field.k1.setConstant(1.0);
 	for (Index i = 0; i < exact.cloud.size(); ++i) {

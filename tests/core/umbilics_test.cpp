@@ -204,8 +204,9 @@ TEST(Umbilics, FollowRigidMotionScaleAndFlippedNormals)
 	EXPECT_EQ(a.region, b.region);
 	EXPECT_EQ(a.singular, b.singular);
 	for (Index i = 0; i < exact.cloud.size(); ++i) {
-		if (a.region[i] >= 0 && !a.singular[i])
+		if (a.region[i] >= 0 && !a.singular[i]) {
 			EXPECT_LT(lineAngle(rotation * a.d1.col(i), b.d1.col(i)), 1e-5);
+		}
 	}
 }
 

@@ -149,6 +149,7 @@ LineSpacing chooseLineSpacing(
 		result.epsilon = std::exp(0.5 * (low + high));
 	}
 	result.distance = at(result.epsilon);
+	result.epsilon /= diagonal;
 	return result;
 }
 

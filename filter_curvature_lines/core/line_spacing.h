@@ -10,7 +10,7 @@
 namespace curvature_lines {
 
 struct LineSpacing {
-	double                             epsilon = 0.0;
+	double                             epsilon = 0.0; // fraction of the bounding-box diagonal
 	std::array<std::vector<double>, 2> distance; // N per family: distance to keep from the next line
 };
 

@@ -24,8 +24,7 @@ constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of a
 constexpr double CloudReach      = 1.5;         // local spacings from the closest point
 constexpr double MaxLength       = 10.0;        // diagonals
 constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
-constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in d
-constexpr double ClosingOffset   = 0.6;   // a start ahead with less sideways offset closes the line, in d
+constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in stop distances
 constexpr double ClosingSpread   = 30.0;  // the offset is spread over so many times its length
 constexpr Index  ReportEvery     = 1024;
 
@@ -291,15 +290,15 @@ bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& pro
 	while (std::abs(front.arc) < MaxLength && advance(front, next)) {
 		if (leftCloud(next) || endsAtUmbilic(front, next))
 			break;
-		// A point passes its start on a parallel track: sideways offsets below the line distance are the
-		// integration's error, or noise, and closing is better than two ends next to each other.
+		// A line that comes back next to its start would be stopped by it. The offset is noise, and closing
+		// is better than two ends side by side. It is less than the room other lines leave.
 		const Vector3d toStart = start.position - next.position;
 		const double   ahead   = toStart.dot(next.direction);
 		const double   aside   = (toStart - ahead * next.direction).norm();
 		const double   step    = (next.position - front.position).norm();
 		const double   d       = std::max(distance(next.cell), 2.0 * step);
 		const bool approaches  = m_side > 0.0 && next.arc > 2.0 * step && ahead > 0.0 &&
-								ahead < OwnArc * d && aside < ClosingOffset * d &&
+								ahead < OwnArc * d && aside < OwnDistance * m_options.stopFactor * d &&
 								next.direction.dot(start.direction) > SharpTurnCosine;
 		if (occupied(next, approaches))
 			break;

@@ -29,7 +29,7 @@ struct LineNetwork {
 	std::vector<Index>    offsets = {0};
 	std::vector<int>      family;            // per line, 1 (along d1) or 2
 	std::vector<char>     closed;            // per line
-	double                epsilon = 0.0;     // the one used
+	double                epsilon = 0.0;     // the one used, fraction of the diagonal
 
 	Index lines() const { return static_cast<Index>(family.size()); }
 };

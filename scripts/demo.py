@@ -24,12 +24,10 @@ SAMPLES = [
 def run(file: Path, out: Path) -> Reconstruction:
     cloud = load_cloud(file)
     with progress_bar(f"{file.stem[:20]:<22}") as report:
-        result = reconstruct(cloud, with_lines=True, report=report)
-    layers = {"mesh": result.mesh, "lines": result.lines}
-    for kind, layer in layers.items():
-        result.meshset.set_current_mesh(layer)
-        result.meshset.save_current_mesh(str(out / f"{file.stem}_{kind}.obj"))
-    mesh, lines = (result.layer(layer) for layer in layers.values())
+        result = reconstruct(cloud, report)
+    result.save(result.mesh, out / f"{file.stem}_mesh.obj")
+    result.save(result.lines, out / f"{file.stem}_lines.obj")
+    mesh, lines = result.layer(result.mesh), result.layer(result.lines)
     render(out / f"{file.stem}_cloud.png", result.layer(result.cleaned))
     render(out / f"{file.stem}_lines.png", mesh, lines)
     render(out / f"{file.stem}_mesh.png", mesh)
@@ -60,12 +58,12 @@ def main() -> int:
                 [name]
                 + [str(found.counts[column]) for column in columns[:-2]]
                 + [f"{100 * found.counts['quads'] / found.counts['faces']:.1f}"]
-                + [str(found.counts["euler_characteristic"]), f"{sum(found.seconds.values()):.1f}"]
+                + [str(found.counts["euler_characteristic"]), f"{found.seconds['total']:.1f}"]
                 for name, found in results.items()
             ],
         )
     )
-    stages = list(dict.fromkeys(stage for found in results.values() for stage in found.seconds))
+    stages = list(dict.fromkeys(stage for found in results.values() for stage in found.seconds if stage != "total"))
     print(
         "\nseconds per stage\n"
         + table(

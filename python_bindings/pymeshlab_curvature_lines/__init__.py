@@ -25,9 +25,6 @@ _FILTERS = {
     "generate_curvature_lines": "Traces the lines of curvature as a new polyline layer",
     "generate_curvature_aligned_quad_mesh": "Builds a quad-dominant mesh from a layer of curvature lines",
     "generate_surface_reconstruction_curvature_aligned": "From a cloud to a curvature-aligned quad mesh, in one step",
-    "compute_curvature_m_weighted_per_vertex": "Principal curvatures by Euler's formula and M-weighted least squares",
-    "compute_curvature_driven_projection": "Projects one layer onto the curvature-driven surface of a cloud",
-    "save_ray_traced_point_set_image": "Ray-traces the surface of a cloud into a PNG file",
 }
 
 

@@ -17,7 +17,6 @@ from .pipeline import Reconstruction, load_cloud, reconstruct
 from .progress import progress_bar
 from .report import number, write_report
 
-METHODS = {"position-field": "Position Field", "traced-lines": "Traced Lines"}
 NORMALS = {"if-missing": "If Missing", "never": "Never", "always": "Always"}
 
 
@@ -33,10 +32,8 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("-o", "--output", type=Path, required=True, metavar="OUTPUT.obj", help="the mesh")
     options.add_argument("--lines", type=Path, metavar="LINES.obj", help="the lines of curvature as well")
     options.add_argument("--report", type=Path, metavar="REPORT.html", help="counts, timings and a picture")
-    options.add_argument("--method", choices=METHODS, default="position-field")
     options.add_argument("--target-vertices", type=int, default=0, metavar="N", help="0 (default): from the cloud")
-    options.add_argument("--epsilon", type=float, metavar="E", help="chord error, fraction of the bounding box diagonal")
-    options.add_argument("--anisotropy", type=float, metavar="A", help="how much longer edges get where it is flat")
+    options.add_argument("--epsilon", type=float, default=0, metavar="E", help="chord error, fraction of the diagonal")
     options.add_argument("--normals", choices=NORMALS, default="if-missing", help="when to estimate normals")
     options.add_argument("--no-outliers", action="store_true", help="keep every point")
     options.add_argument("--no-denoise", action="store_true", help="keep every point where it is")
@@ -82,8 +79,8 @@ def _checked(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 def _run(options: argparse.Namespace) -> None:
     parameters = {
-        "method": METHODS[options.method],
         "target_vertices": options.target_vertices,
+        "epsilon": options.epsilon,
         "estimate_normals": NORMALS[options.normals],
         "reject_outliers": not options.no_outliers,
         "denoise": not options.no_denoise,
@@ -91,20 +88,13 @@ def _run(options: argparse.Namespace) -> None:
         "triangulate": options.triangulate,
         "close_holes": options.close_holes,
     }
-    for name in ("epsilon", "anisotropy"):
-        if (value := getattr(options, name)) is not None:
-            parameters[name] = value
-
     cloud = load_cloud(options.input)
     with nullcontext() if options.quiet else progress_bar() as report:
-        result = reconstruct(cloud, with_lines=bool(options.lines), report=report, **parameters)
+        result = reconstruct(cloud, report, **parameters)
 
-    meshset = result.meshset
-    meshset.set_current_mesh(result.mesh)
-    meshset.save_current_mesh(str(options.output))
+    result.save(result.mesh, options.output)
     if options.lines:
-        meshset.set_current_mesh(result.lines)
-        meshset.save_current_mesh(str(options.lines))
+        result.save(result.lines, options.lines)
     if not options.quiet:
         for name, value in result.counts.items():
             print(f"{name.replace('_', ' '):<28}{number(value):>12}")

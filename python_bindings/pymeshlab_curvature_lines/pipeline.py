@@ -22,14 +22,18 @@ class Reconstruction:
     """What the pipeline made of a cloud; the layers live in ``meshset``."""
 
     meshset: pymeshlab.MeshSet
-    mesh: int  # layer ids
-    lines: int | None
-    cleaned: int
-    counts: dict[str, float]  # as the filters returned them, without the timings
-    seconds: dict[str, float]  # per stage, in their order
+    cleaned: int  # layer ids
+    lines: int
+    mesh: int
+    counts: dict[str, float]  # as the filter returned them, without the timings
+    seconds: dict[str, float]  # per stage, and "total"
 
     def layer(self, number: int) -> pymeshlab.Mesh:
         return self.meshset.mesh(number)
+
+    def save(self, number: int, file: str | PathLike[str]) -> None:
+        self.meshset.set_current_mesh(number)
+        self.meshset.save_current_mesh(str(file))
 
 
 def load_cloud(file: str | PathLike[str]) -> pymeshlab.MeshSet:
@@ -47,28 +51,17 @@ def load_cloud(file: str | PathLike[str]) -> pymeshlab.MeshSet:
     return cloud
 
 
-def reconstruct(
-    cloud: pymeshlab.MeshSet, *, with_lines: bool = False, report: Report | None = None, **parameters: object
-) -> Reconstruction:
+def reconstruct(cloud: pymeshlab.MeshSet, report: Report | None = None, **parameters: object) -> Reconstruction:
     """Runs the whole pipeline on the current layer; ``parameters`` are the filter's own."""
     with progress(cloud, report) if report else nullcontext():
         result = cloud.generate_surface_reconstruction_curvature_aligned(keep_intermediate_layers=True, **parameters)
-        mesh = cloud.current_mesh_id()
-        cleaned = [layer.id() for layer in cloud if not layer.face_number() and not layer.edge_number()][-1]
-        lines = next((layer.id() for layer in cloud if layer.edge_number()), None)
-        if with_lines and lines is None:
-            cloud.set_current_mesh(cleaned)
-            shared = {name: parameters[name] for name in ("epsilon", "target_vertices") if name in parameters}
-            traced = cloud.generate_curvature_lines(**shared)
-            result |= {name: value for name, value in traced.items() if name not in result}
-            lines = cloud.current_mesh_id()
-            cloud.set_current_mesh(mesh)
+    cleaned, lines, mesh = [layer.id() for layer in cloud][-3:]
     prefix = "seconds_"
     return Reconstruction(
         cloud,
-        mesh,
-        lines,
         cleaned,
+        lines,
+        mesh,
         counts={name: value for name, value in result.items() if not name.startswith(prefix)},
         seconds={name.removeprefix(prefix): value for name, value in result.items() if name.startswith(prefix)},
     )

@@ -30,7 +30,9 @@ def progress(ms: pymeshlab.MeshSet, report: Callable[[str, int], None]) -> Itera
         with open(reader, errors="replace") as lines:
             for line in lines:
                 if found := _PROGRESS.search(line):
-                    report(found["stage"], int(found["percent"]))
+                    # The host's own last line names the filter, not a stage.
+                    stage = "Done" if found["stage"].endswith(" applied!") else found["stage"]
+                    report(stage, int(found["percent"]))
 
     listener = Thread(target=listen, daemon=True)
     sys.stdout.flush()

@@ -35,7 +35,9 @@ double meanCost(const OperatingRegion& region, const VariationModel& model, doub
 {
 	double cost = 0.0, total = 0.0;
 	for (Index j = 1; j < region.size(); ++j) {
-		const double weight = region.geometricWeight(0, j);
+		// No nearer than a spacing: one neighbour must not decide between two models.
+		const double weight =
+			1.0 / std::max(region.squaredDistances[j], region.spacing * region.spacing);
 		cost += weight * gemanMcClureCost(residual(region, model, j) / scale);
 		total += weight;
 	}
@@ -137,7 +139,7 @@ NormalConsensus normalConsensus(const OperatingRegion& region)
 			const double rise =
 				region.positions[b].dot(normal.head<2>()) + region.heights[b] * normal.z();
 			const double distance =
-				std::sqrt(std::max(region.squaredDistances[b], region.closestPair));
+				std::max(std::sqrt(region.squaredDistances[b]), 0.1 * region.spacing);
 			const double angle = turn + std::abs(rise) / distance;
 			cost += gemanMcClureCost(angle / consentAngle); // other wrong normals must not pull
 			support += angle < consentAngle;

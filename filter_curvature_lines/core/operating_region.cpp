@@ -38,22 +38,29 @@ void OperatingRegion::collect(
 	const NeighborSearch&  search,
 	Index                  i,
 	const Eigen::Vector3d& normal,
-	double                 spacing,
+	double                 localSpacing,
 	double                 regionScale,
+	Index                  minPoints,
 	Index                  maxPoints)
 {
 	const Eigen::Vector3d center = cloud.positions.col(i);
-	radius                       = regionScale * spacing;
+	radius                       = regionScale * localSpacing;
 	std::vector<Index> found     = search.within(center, radius);
+	const bool         sparse    = static_cast<Index>(found.size()) <= minPoints; // p_i is among them
+	if (sparse)
+		found = search.within(center, 2.0 * radius);
 	found.erase(std::remove(found.begin(), found.end(), i), found.end());
-	if (maxPoints > 0 && static_cast<Index>(found.size()) > maxPoints) {
-		found.resize(maxPoints);
-		const double farthest = (cloud.positions.col(found.back()) - center).norm();
-		radius                = std::max(farthest, 1e-3 * radius);
+	const Index limit = sparse ? minPoints : maxPoints;
+	const bool  cut   = limit > 0 && static_cast<Index>(found.size()) > limit;
+	if (cut)
+		found.resize(limit);
+	if (!found.empty() && (sparse || cut)) {
+		const double reach = (cloud.positions.col(found.back()) - center).norm();
+		radius             = std::max(reach, sparse ? radius : 1e-3 * radius);
 	}
 
-	frame       = TangentFrame(normal);
-	closestPair = closestPairShare * std::pow(spacing / radius, 2);
+	frame   = TangentFrame(normal);
+	spacing = localSpacing / radius;
 	points.assign(1, i);
 	points.insert(points.end(), found.begin(), found.end());
 	positions.clear();
@@ -73,7 +80,7 @@ void OperatingRegion::collect(
 double OperatingRegion::geometricWeight(Index a, Index b) const
 {
 	const double meanSquare = 0.5 * (squaredDistances[a] + squaredDistances[b]);
-	return 1.0 / std::max(meanSquare, closestPair);
+	return 1.0 / std::max(meanSquare, closestPairShare * spacing * spacing);
 }
 
 void collectCentrePairs(const OperatingRegion& region, VariationSamples& samples)

@@ -17,18 +17,20 @@ struct OperatingRegion {
 	std::vector<double>          squaredDistances; // to p_i, in space
 	TangentFrame                 frame       = TangentFrame(Eigen::Vector3d::UnitZ());
 	double                       radius      = 1.0; // length
-	double                       closestPair = 0.0; // smallest mean squared distance that counts
+	double                       spacing     = 1.0; // local spacing, in radii
 
 	Index size() const { return static_cast<Index>(points.size()); }
 
-	// `normal` stands for n_i, which may be wrong.
+	// `normal` stands for n_i, which may be wrong. Then so may be the spacing, which is measured in its
+	// tangent plane: with fewer than minPoints the ball grows, to twice its radius at most.
 	void collect(
 		const PointCloud&      cloud,
 		const NeighborSearch&  search,
 		Index                  i,
 		const Eigen::Vector3d& normal,
-		double                 spacing,
+		double                 localSpacing,
 		double                 regionScale,
+		Index                  minPoints,
 		Index                  maxPoints);
 
 	// 1 / mean squared distance of the two points to p_i, A09's prior for the variance of a sample.

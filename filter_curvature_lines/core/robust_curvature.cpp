@@ -15,8 +15,10 @@ namespace curvature_lines {
 namespace {
 
 constexpr Index  minPairs     = 5;
+constexpr Index  minRegion    = 12;
 constexpr double minSupport   = 0.25; // share of the near neighbours that supports a right normal (a corner: 1/3)
-constexpr double costRatio    = 0.85; // a better normal must lower the cost of the centre pairs to this share
+constexpr double costRatio    = 0.85; // a better normal must lower the cost of the centre pairs to this share,
+constexpr double minConsent   = 0.2;  // unless fewer than this share of the region agree with n_i
 constexpr double minAgreement = 0.2; // of the summed weight; below, the corrected normal is a coin toss
 
 struct Estimate {
@@ -93,6 +95,7 @@ void PointEstimator::collectRegion(Index i, const Eigen::Vector3d& normal)
 		normal,
 		m_minimum->spacing[i],
 		m_options->regionScale,
+		m_options->featureGate ? minRegion : 0,
 		m_options->maxPoints);
 	keepAllMembers();
 }
@@ -135,7 +138,8 @@ void PointEstimator::passGate(Index i, const CentreFits& centre, double commonSc
 			// No crease: n_i itself is wrong, if with a better one most of the disagreement is gone.
 			const CentreFits again = centreFits(i, consensus.normal);
 			GateResult       other = m_gate.select(m_region, again, commonScale);
-			if (other.cost < costRatio * own.cost)
+			const double     ratio = own.consent < minConsent ? 1.0 : costRatio;
+			if (other.cost < ratio * own.cost)
 				own = std::move(other);
 			else
 				collectRegion(i, m_cloud->normals.col(i));

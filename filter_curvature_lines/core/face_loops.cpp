@@ -15,11 +15,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double Pi = 3.14159265358979323846;
-// A sample is covered when the nearest point of the cloud is at most this many spacings aside ...
+// A sample inside a loop is covered when there is a point of the cloud within so many spacings of it, of the
+// point below or above it, or aside in the tangent plane: samples lie on chords, and a face may be the tip of
+// a finger. Only points that look the same way count, so the wall at the end of a tube does not.
 constexpr double CoverDistance = 2.5;
-// ... and its height above that point's tangent plane at most this share of the loop's size: a face is
-// flatter than that, a cap over an open end is not.
-constexpr double CoverHeight = 0.3;
+constexpr double SameWay       = 0.5;
 
 // Signed angle from a to b about n, in (-pi, pi].
 double signedAngle(const Vector3d& a, const Vector3d& b, const Vector3d& n)
@@ -74,38 +74,67 @@ LoopClassifier::LoopClassifier(
 
 LoopKind LoopClassifier::operator()(const std::vector<Index>& loop) const
 {
+	// Between the bounds a face may be a strongly curved cap or saddle: there the cloud decides.
 	const double turning = turningNumber(m_graph, loop);
-	if (turning < 0.5)
+	if (turning < -0.5)
 		return LoopKind::Rim;
-	if (turning > 1.5)
+	if (turning > 2.5)
 		return LoopKind::Tangled;
-	return covered(loop) ? LoopKind::Face : LoopKind::Hole;
+	return isCovered(loop) ? LoopKind::Face : LoopKind::Hole;
 }
 
-bool LoopClassifier::covered(const std::vector<Index>& loop) const
+bool LoopClassifier::isCovered(const std::vector<Index>& loop) const
 {
-	Vector3d center = Vector3d::Zero();
+	const double n      = static_cast<double>(loop.size());
+	Vector3d     center = Vector3d::Zero(), normal = Vector3d::Zero();
 	for (Index h : loop)
-		center += m_graph.positions().col(m_graph.origin(h));
-	center /= static_cast<double>(loop.size());
+		center += m_graph.positions().col(m_graph.origin(h)) / n;
+	double   size        = 0.0;
+	Vector3d meanOfEnds = Vector3d::Zero();
+	for (Index h : loop) {
+		meanOfEnds += m_graph.normals().col(m_graph.origin(h)) / n;
+		const Vector3d a = m_graph.positions().col(m_graph.origin(h)) - center;
+		const Vector3d b = m_graph.positions().col(m_graph.origin(HalfEdgeGraph::twin(h))) - center;
+		normal += a.cross(b);
+		size += a.norm() / n;
+	}
+	// The vector area of a sliver may point anywhere; the normals around an opening cancel.
+	normal = meanOfEnds.norm() > 0.5 ? meanOfEnds.normalized() : normal.normalized();
 
-	Index site = 0, samples = 0, bare = 0;
+	Index site = 0, samples = 0, covered = 0;
 	for (Index h : loop) {
 		const Vector3d corner = m_graph.positions().col(m_graph.origin(h));
-		const double   size   = (corner - center).norm();
-		for (const double inward : {0.35, 0.6, 0.85}) {
+		for (const double inward : {0.4, 0.7, 0.9}) {
 			const Vector3d sample = corner + inward * (center - corner);
-			site                  = m_cells.locate(sample, site);
-			const Vector3d offset = sample - m_cells.site(site);
-			const Vector3d normal = m_cloud.normals.col(site);
-			const double   height = std::abs(offset.dot(normal));
-			const double   aside  = (offset - offset.dot(normal) * normal).norm();
-			const double   reach  = CoverDistance * siteSpacing(m_cells, site);
 			++samples;
-			bare += aside > reach || height > std::max(reach, CoverHeight * size);
+			covered += isPointAbove(sample, normal, size, site);
 		}
 	}
-	return 2 * bare <= samples;
+	return 2 * covered >= samples;
+}
+
+// Looks up and down the normal from the sample; `site` is where the search starts and ends.
+bool LoopClassifier::isPointAbove(
+	const Vector3d& sample, const Vector3d& normal, double size, Index& site) const
+{
+	const auto isNear = [&](double height) {
+		const Vector3d point  = sample + height * normal;
+		site                  = m_cells.locate(point, site);
+		const Vector3d n      = m_cloud.normals.col(site);
+		Vector3d       offset = m_cells.site(site) - point;
+		if (n.dot(normal) > SameWay)
+			offset -= offset.dot(n) * n;
+		return n.dot(normal) > 0.0 && offset.norm() < CoverDistance * siteSpacing(m_cells, site);
+	};
+	if (isNear(0.0))
+		return true;
+	const double step = CoverDistance * siteSpacing(m_cells, site);
+	if (!(step > 0.0))
+		return false;
+	for (double height = step; height < 1.5 * size; height += step)
+		if (isNear(height) || isNear(-height))
+			return true;
+	return false;
 }
 
 } // namespace curvature_lines

@@ -9,10 +9,10 @@
 namespace curvature_lines {
 
 enum class LoopKind {
-	Face,    // turns once and the cloud covers its inside
-	Rim,     // turns no time or backwards: the outside of an open piece
-	Hole,    // turns once, but there are no points inside
-	Tangled, // turns more than once: bounds no disk, a crossing is missing
+	Face,    // turns about once and there are points of the cloud inside
+	Rim,     // turns backwards: the outside of an open piece
+	Hole,    // no points inside: an opening, or the end of a tube
+	Tangled, // turns more than twice: bounds no disk, a crossing is missing
 };
 
 // Total turning of a loop in its tangent planes, as a multiple of 2 pi, of exterior corners and bends
@@ -25,7 +25,9 @@ public:
 	LoopKind operator()(const std::vector<Index>& loop) const;
 
 private:
-	bool covered(const std::vector<Index>& loop) const;
+	bool isCovered(const std::vector<Index>& loop) const;
+	bool isPointAbove(
+		const Eigen::Vector3d& sample, const Eigen::Vector3d& normal, double size, Index& site) const;
 
 	const PointCloud&    m_cloud;
 	const VoronoiCells&  m_cells;

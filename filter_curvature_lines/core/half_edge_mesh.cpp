@@ -15,6 +15,10 @@ namespace curvature_lines {
 
 namespace {
 
+// Edges that meet at more than 155 degrees continue each other. Others form the corner of a face, where
+// two lines end together: along a rim, that is where the quads are.
+constexpr double StraightCosine = -0.9;
+
 class DisjointSets {
 public:
 	explicit DisjointSets(Index n) : m_parent(n) { std::iota(m_parent.begin(), m_parent.end(), 0); }
@@ -191,6 +195,9 @@ bool HalfEdgeGraph::dissolveDegreeTwo()
 	bool changed = false;
 	for (Index v = 0; v < vertexCount(); ++v) {
 		if (m_around[v].size() != 2 || m_around[v][0] >> 1 == m_around[v][1] >> 1)
+			continue;
+		const Eigen::Vector3d t0 = tangent(m_around[v][0]), t1 = tangent(m_around[v][1]);
+		if (t0.dot(t1) > StraightCosine * t0.norm() * t1.norm())
 			continue;
 		// The first edge grows over the second; its half-edge that left v now leaves the far end.
 		const Index grown = m_around[v][0], merged = m_around[v][1];

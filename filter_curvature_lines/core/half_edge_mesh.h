@@ -51,7 +51,7 @@ public:
 	// faces it merges are disks.
 	bool removeEdge(Index edge);   // merges the faces on its two sides
 	bool cutDanglingEdges();       // chains that end in a vertex of degree one, repeatedly
-	bool dissolveDegreeTwo();      // joins the two edges of every vertex of degree two
+	bool dissolveDegreeTwo();      // joins the two edges of a vertex where they continue each other
 	bool removeThinDigons();       // one side of faces with two sides that lie close; faces with one side
 	void reduce();                 // all of them until nothing changes
 

@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 // in loops that turn twice, where the distance doubles until it helps.
 constexpr double SamePlace     = 1e-3;
 constexpr double FirstRepair   = 0.06;
-constexpr double LargestRepair = 2.0;
+constexpr double LargestRepair = 1.0;
 
 class Arranger {
 public:
@@ -203,7 +203,7 @@ std::vector<std::vector<Index>> tangledLoops(const HalfEdgeGraph& graph)
 {
 	std::vector<std::vector<Index>> tangled;
 	for (std::vector<Index>& loop : graph.faceLoops())
-		if (turningNumber(graph, loop) > 1.5)
+		if (turningNumber(graph, loop) > 1.8)
 			tangled.push_back(std::move(loop));
 	return tangled;
 }
@@ -228,7 +228,7 @@ arrangeLines(const VoronoiCells& cells, const LineNetwork& lines, const LineInte
 		}
 	}
 	graph.separateParallelEdges();
-	return {std::move(graph), arranger.merged(), static_cast<Index>(tangled.size())};
+	return {std::move(graph), arranger.merged()};
 }
 
 } // namespace curvature_lines

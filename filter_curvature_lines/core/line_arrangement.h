@@ -9,9 +9,8 @@
 namespace curvature_lines {
 
 struct LineArrangement {
-	HalfEdgeGraph graph;       // reduced
-	Index         merged = 0;  // crossings joined to another because three lines pass too close together
-	Index         tangled = 0; // loops that still bound no disk: crossings the lines do not show
+	HalfEdgeGraph graph;      // reduced, no two edges between the same vertices
+	Index         merged = 0; // crossings joined to another because three lines pass too close together
 };
 
 // Pairs of lines cross consistently, but where three pass within the height of one above the other, the

@@ -4,6 +4,7 @@
 #include "quad_mesh.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -20,6 +21,7 @@ using Face = std::vector<Index>;
 
 constexpr double SmallHole     = 12.0; // perimeter in median edges
 constexpr double CollarWidth   = 0.3;  // of the way to the centre
+constexpr Index  Crumb         = 4;    // faces
 
 // Polygons still in the numbering of the graph, with vertices added at the end.
 struct Polygons {
@@ -47,30 +49,91 @@ void addCollared(const Face& border, Polygons& polygons)
 	polygons.faces.push_back(inner);
 }
 
-Polygons facesOf(
-	const PointCloud& cloud, const VoronoiCells& cells, const HalfEdgeGraph& graph, Index& discarded)
+Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadMeshResult& result)
 {
 	Polygons polygons;
 	for (Index v = 0; v < graph.vertexCount(); ++v) {
 		polygons.vertices.push_back(graph.positions().col(v));
 		polygons.normals.push_back(graph.normals().col(v));
 	}
-	const LoopClassifier kindOf(cloud, cells, graph);
 	for (const std::vector<Index>& loop : graph.faceLoops()) {
+		const LoopKind kind = kindOf(loop);
+		if (kind != LoopKind::Face) {
+			++result.discardedLoops;
+			result.tangledLoops += kind == LoopKind::Tangled;
+			continue;
+		}
 		Face face;
 		for (Index h : loop)
 			face.push_back(graph.origin(h));
 		Face sorted = face;
 		std::sort(sorted.begin(), sorted.end());
 		const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-		if (kindOf(loop) != LoopKind::Face)
-			++discarded;
-		else if (simple)
+		if (simple)
 			polygons.faces.push_back(face);
 		else
 			addCollared(face, polygons);
 	}
 	return polygons;
+}
+
+bool isInside(const Vector3d& point, const Face& face, const Polygons& polygons)
+{
+	Vector3d center = Vector3d::Zero(), normal = Vector3d::Zero();
+	for (Index v : face) {
+		center += polygons.vertices[v] / static_cast<double>(face.size());
+		normal += polygons.normals[v];
+	}
+	double radius = 0.0;
+	for (Index v : face)
+		radius = std::max(radius, (polygons.vertices[v] - center).norm());
+	if ((point - center).norm() > radius)
+		return false;
+	// Even-odd rule along the mean normal.
+	const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
+	bool           inside = false;
+	for (std::size_t k = 0; k < face.size(); ++k) {
+		const Vector3d a = polygons.vertices[face[k]] - point;
+		const Vector3d b = polygons.vertices[face[(k + 1) % face.size()]] - point;
+		const double   ay = a.dot(y), by = b.dot(y);
+		if ((ay > 0.0) != (by > 0.0) && a.dot(x) + (b - a).dot(x) * ay / (ay - by) > 0.0)
+			inside = !inside;
+	}
+	return inside;
+}
+
+// Lines that cross each other but none of those around them form a second layer over a face of the
+// others: it goes, and so do crumbs beside a mesh. Separate objects stay.
+Index removeIslands(Polygons& polygons)
+{
+	std::vector<Index> component(polygons.vertices.size());
+	std::iota(component.begin(), component.end(), 0);
+	const auto root = [&](Index v) {
+		while (component[v] != v)
+			v = component[v] = component[component[v]];
+		return v;
+	};
+	for (const Face& face : polygons.faces)
+		for (Index v : face)
+			component[root(v)] = root(face[0]);
+	std::vector<Index> size(component.size(), 0);
+	for (const Face& face : polygons.faces)
+		++size[root(face[0])];
+
+	const Index       largest = size.empty() ? 0 : *std::max_element(size.begin(), size.end());
+	std::vector<char> island(component.size(), 0);
+	for (Index c = 0; c < static_cast<Index>(component.size()); ++c) {
+		const auto liesIn = [&](const Face& face) {
+			return size[root(face[0])] > size[c] && isInside(polygons.vertices[c], face, polygons);
+		};
+		island[c] = size[c] > 0 &&
+					((size[c] < Crumb && largest > 10 * Crumb) ||
+					 std::any_of(polygons.faces.begin(), polygons.faces.end(), liesIn));
+	}
+	const auto onIsland = [&](const Face& face) { return island[root(face[0])] != 0; };
+	polygons.faces.erase(
+		std::remove_if(polygons.faces.begin(), polygons.faces.end(), onIsland), polygons.faces.end());
+	return static_cast<Index>(std::count(island.begin(), island.end(), 1));
 }
 
 // Faces around a vertex that do not hang together get a copy of it each; unused vertices go.
@@ -182,9 +245,11 @@ QuadMeshResult buildQuadMesh(
 
 	const LineArrangement arrangement = arrangeLines(cells, lines, found);
 	result.mergedCrossings = arrangement.merged;
-	result.tangledLoops    = arrangement.tangled;
 	progress.report(0.7);
-	result.mesh = separateFans(facesOf(cloud, cells, arrangement.graph, result.discardedLoops));
+	const LoopClassifier kindOf(cloud, cells, arrangement.graph);
+	Polygons             polygons = facesOf(arrangement.graph, kindOf, result);
+	result.islands                = removeIslands(polygons);
+	result.mesh                   = separateFans(polygons);
 	progress.report(0.8);
 	if (options.closeHoles)
 		closeSmallHoles(result.mesh);

@@ -35,7 +35,9 @@ struct Neighborhoods {
 	MinimumNeighborhoods minimum;
 
 	Neighborhoods(
-		const PointCloud& cloud, const MinimumNeighborhoodOptions& options, const Progress& progress) :
+		const PointCloud&                 cloud,
+		const MinimumNeighborhoodOptions& options,
+		const Progress&                   progress) :
 			search(cloud.positions), minimum(minimumNeighborhoods(cloud, search, options, progress))
 	{
 	}
@@ -66,16 +68,16 @@ Index automaticTargetVertices(Index n)
 	return std::max<Index>(50, n / 16);
 }
 
-ReconstructionResult reconstruct(
-	const PointCloud& cloud, const ReconstructionOptions& options, const Progress& progress)
+ReconstructionResult
+reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const Progress& progress)
 {
 	ReconstructionResult result;
 	StageClock           clock(result.seconds);
 
 	result.outlier.assign(cloud.size(), 0);
 	if (options.rejectOutliers) {
-		OutlierResult rejected = rejectOutliers(
-			cloud, options.outliers, progress.sub(0.0, 0.2, "Rejecting outliers"));
+		OutlierResult rejected =
+			rejectOutliers(cloud, options.outliers, progress.sub(0.0, 0.2, "Rejecting outliers"));
 		result.outlier = std::move(rejected.outlier);
 		result.noise   = rejected.noise;
 		clock.book("outliers");
@@ -83,7 +85,7 @@ ReconstructionResult reconstruct(
 	keepInliers(cloud, result);
 
 	std::optional<Neighborhoods> around;
-	const auto estimate = [&](const Progress& part) {
+	const auto                   estimate = [&](const Progress& part) {
 		around.emplace(
 			result.cloud, options.neighborhood, part.sub(0.0, 0.1, "Finding neighborhoods"));
 		clock.book("neighborhoods");
@@ -122,8 +124,7 @@ ReconstructionResult reconstruct(
 		result.field.d2 = std::move(smoothed.d2);
 		clock.book("directions");
 	}
-	result.umbilics =
-		findUmbilics(result.cloud, result.field, around->minimum, options.umbilics);
+	result.umbilics = findUmbilics(result.cloud, result.field, around->minimum, options.umbilics);
 	clock.book("umbilics");
 	const VoronoiCells cells(
 		result.cloud.positions, progress.sub(0.72, 0.76, "Finding Voronoi cells"));

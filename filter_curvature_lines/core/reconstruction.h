@@ -1,4 +1,4 @@
-// The whole pipeline (A09 fig. 1): outliers out, positions denoised, curvature, directions, lines, mesh.
+// The whole pipeline (A09 fig. 1): outliers out, points denoised, curvature, directions, lines, mesh.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -13,42 +13,42 @@
 namespace curvature_lines {
 
 struct ReconstructionOptions {
-	bool rejectOutliers   = true;
-	bool denoise          = true;
-	bool smoothDirections = true;
-	RobustCurvatureOptions    curvature;
+	bool                       rejectOutliers   = true;
+	bool                       denoise          = true;
+	bool                       smoothDirections = true;
+	RobustCurvatureOptions     curvature;
 	MinimumNeighborhoodOptions neighborhood;
-	OutlierOptions            outliers;
-	DenoisingOptions          denoising;
-	DirectionSmoothingOptions directions;
-	UmbilicOptions            umbilics;
-	LineTracingOptions        tracing;   // targetVertices 0 and epsilon 0: from the size of the cloud
-	QuadMeshOptions           mesh;
+	OutlierOptions             outliers;
+	DenoisingOptions           denoising;
+	DirectionSmoothingOptions  directions;
+	UmbilicOptions             umbilics;
+	LineTracingOptions tracing; // targetVertices 0 and epsilon 0: from the size of the cloud
+	QuadMeshOptions    mesh;
 
 	ReconstructionOptions() { tracing.epsilon = 0.0; }
 };
 
 struct ReconstructionResult {
-	std::vector<char> outlier;   // per input point
-	std::vector<Index> kept;     // input index of each point of `cloud`
-	PointCloud        cloud;     // cleaned
-	CurvatureField    field;     // of the cleaned cloud, directions as the lines followed them
-	UmbilicRegions    umbilics;
-	LineNetwork       lines;
-	QuadMeshResult    mesh;
-	double            noise   = 0.0; // standard deviation of heights, when outliers were looked for
-	double            rmsMove = 0.0; // by denoising
+	std::vector<char>  outlier; // per input point
+	std::vector<Index> kept;    // input index of each point of `cloud`
+	PointCloud         cloud;   // cleaned
+	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
+	UmbilicRegions     umbilics;
+	LineNetwork        lines;
+	QuadMeshResult     mesh;
+	double             noise = 0.0; // standard deviation of heights, when outliers were looked for
+	double             rmsMove = 0.0;      // by denoising
 	std::map<std::string, double> seconds; // per stage: outliers, neighborhoods, curvature, …
 };
 
-// The mesh may come out empty (a plane has no lines of curvature); that is for the caller to report.
+// The mesh may come out empty (too sparse a cloud); that is for the caller to report.
 ReconstructionResult reconstruct(
 	const PointCloud&            cloud, // prepared (unit frame)
 	const ReconstructionOptions& options  = {},
 	const Progress&              progress = {});
 
 // How many vertices a mesh of a cloud of n points gets when nobody says: one per 16 points, so that
-// faces are about four point spacings wide, the densest that lines at their minimum spacing fill evenly.
+// faces are about four point spacings wide, as dense as lines at their minimum spacing can be.
 Index automaticTargetVertices(Index n);
 
 } // namespace curvature_lines

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature_cache.h"
 
-#include <chrono>
 #include <cstring>
 
 namespace curvature_lines {
@@ -10,7 +9,7 @@ namespace curvature_lines {
 namespace {
 
 constexpr std::size_t maxEntries = 4;
-// An estimate takes about half a kilobyte per point; older ones are dropped beyond this many points.
+// An estimate takes about half a kilobyte per point: older ones go beyond this many points.
 constexpr Index maxPoints = 1000000;
 
 // 64-bit hash of a sequence of doubles (multiply-xorshift; each word is mixed in order).
@@ -63,8 +62,7 @@ std::uint64_t fingerprint(const EstimateOptions& options)
 
 CurvatureEstimate::CurvatureEstimate(
 	const LayerPoints& points, const EstimateOptions& options, const Progress& progress) :
-		prepared(prepareCloud(points.positions, points.normals)),
-		search(prepared.cloud.positions),
+		prepared(prepareCloud(points.positions, points.normals)), search(prepared.cloud.positions),
 		minimum(minimumNeighborhoods(
 			prepared.cloud,
 			search,
@@ -92,22 +90,19 @@ CurvatureCache::find(std::uint64_t points, std::uint64_t options)
 std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimate(
 	const LayerPoints& points, const EstimateOptions& options, const Progress& progress)
 {
-	const Entry key {fingerprint(points), fingerprint(options), nullptr};
+	const Entry key{fingerprint(points), fingerprint(options), nullptr};
 	if (auto known = find(key.points, key.options))
 		return known;
-	const auto start = std::chrono::steady_clock::now();
-	auto       made  = std::make_shared<CurvatureEstimate>(points, options, progress);
-	made->seconds =
-		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	auto made = std::make_shared<const CurvatureEstimate>(points, options, progress);
 	store({key.points, key.options, made});
 	return made;
 }
 
-LayerCurvature CurvatureCache::ofLayer(
-	const MeshModel& layer, const LayerPoints& points, const Progress& progress)
+LayerCurvature
+CurvatureCache::ofLayer(const MeshModel& layer, const LayerPoints& points, const Progress& progress)
 {
 	LayerCurvature      result;
-	const std::uint64_t print = fingerprint(points);
+	const std::uint64_t print   = fingerprint(points);
 	bool                carried = false;
 	{
 		const std::lock_guard<std::mutex> lock(m_mutex);
@@ -126,8 +121,8 @@ LayerCurvature CurvatureCache::ofLayer(
 
 	result.ownDirections = carried && !carriesDirections(layer, points, *result.estimate);
 	if (result.ownDirections)
-		result.field = std::make_shared<CurvatureField>(
-			withLayerDirections(layer, points, *result.estimate));
+		result.field =
+			std::make_shared<CurvatureField>(withLayerDirections(layer, points, *result.estimate));
 	else
 		result.field = {result.estimate, &result.estimate->field};
 	return result;

@@ -1,9 +1,10 @@
-// Curvature estimates kept in memory between filters. An estimate belongs to exact points, normals and
+// Curvature estimates kept in memory between filters. Each belongs to exact points, normals and
 // parameters, which a fingerprint stands for: when the layer has changed, nothing matches and the
 // estimate is made anew. Layers are never referenced, so deleting them is harmless.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -31,31 +32,30 @@ struct CurvatureEstimate {
 	const NeighborSearch       search;
 	const MinimumNeighborhoods minimum;
 	const CurvatureField       field;
-	double                     seconds = 0.0; // the estimate took
 };
 
 // What the layer carries, or what was computed because it carried nothing fresh.
 struct LayerCurvature {
 	std::shared_ptr<const CurvatureEstimate> estimate;
-	std::shared_ptr<const CurvatureField>    field; // with the layer's directions
-	bool reused        = false; // no estimation was needed
+	std::shared_ptr<const CurvatureField>    field;          // with the layer's directions
+	bool                                     reused = false; // no estimation was needed
 	bool ownDirections = false; // the layer's directions are not the estimate's: they were smoothed
 };
 
 class CurvatureCache {
 public:
 	// The estimate for these points and options.
-	std::shared_ptr<const CurvatureEstimate> estimate(
-		const LayerPoints& points, const EstimateOptions& options, const Progress& progress);
+	std::shared_ptr<const CurvatureEstimate>
+	estimate(const LayerPoints& points, const EstimateOptions& options, const Progress& progress);
 
-	// The curvature the layer carries if it is an estimate of its points and normals as they are now;
+	// The curvature the layer carries if it is an estimate of its points and normals as they are;
 	// otherwise the one with default options.
 	LayerCurvature
 	ofLayer(const MeshModel& layer, const LayerPoints& points, const Progress& progress);
 
 private:
 	struct Entry {
-		std::uint64_t points, options; // fingerprints
+		std::uint64_t                            points, options; // fingerprints
 		std::shared_ptr<const CurvatureEstimate> estimate;
 	};
 

@@ -102,10 +102,8 @@ std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
 	unsigned int&,
 	vcg::CallBackPos* callback)
 {
-	const FilterSpec& spec    = specOf(ID(action));
-	const auto        failure = [&](const QString& why) {
-		return MLException(spec.name + ": " + why);
-	};
+	const FilterSpec& spec = specOf(ID(action));
+	const auto failure = [&](const QString& why) { return MLException(spec.name + ": " + why); };
 	try {
 		const RichParameterList list = withDefaults(given, spec.parameters(document));
 		FilterResults           results =

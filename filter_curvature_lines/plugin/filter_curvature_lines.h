@@ -6,8 +6,7 @@
 
 #include "curvature_cache.h"
 
-class FilterCurvatureLines : public QObject, public FilterPlugin
-{
+class FilterCurvatureLines : public QObject, public FilterPlugin {
 	Q_OBJECT
 	MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
 	Q_INTERFACES(FilterPlugin)
@@ -32,7 +31,8 @@ public:
 	int         postCondition(const QAction* action) const override;
 
 	using FilterPlugin::initParameterList;
-	RichParameterList initParameterList(const QAction* action, const MeshDocument& document) override;
+	RichParameterList
+	initParameterList(const QAction* action, const MeshDocument& document) override;
 
 	std::map<std::string, QVariant> applyFilter(
 		const QAction*           action,

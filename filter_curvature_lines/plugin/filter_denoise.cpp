@@ -1,5 +1,7 @@
 // Denoise Point Cloud by Robust Curvature: core/denoising on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include "filter_table.h"
 #include "help_text.h"
 
@@ -86,7 +88,7 @@ FilterResults apply(const FilterContext& context)
 	const CurvatureEstimate& estimate = *curvature.estimate;
 	results.seconds("curvature", stage.lap());
 
-	const PointCloud corrected {estimate.prepared.cloud.positions, estimate.field.correctedNormals};
+	const PointCloud corrected{estimate.prepared.cloud.positions, estimate.field.correctedNormals};
 	const DenoisingResult denoised = denoise(
 		corrected,
 		estimate.search,
@@ -125,7 +127,8 @@ FilterSpec denoiseFilter()
 			helpInput +
 			"<br><br><b>Writes</b> coordinates and normals. Curvature on the layer then belongs to "
 			"the former points: compute it again. The points also slide along the surface by about "
-			"the size of the noise: do not use this filter on clouds whose colours matter in detail. "
+			"the size of the noise: do not use this filter on clouds whose colours matter in "
+			"detail. "
 			"Outliers should be removed before (<i>Select Outliers by Robust Curvature</i>)." +
 			helpChaining + helpReference,
 		FilterPlugin::PointSet + FilterPlugin::Smoothing,

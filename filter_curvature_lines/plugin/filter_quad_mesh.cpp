@@ -1,5 +1,7 @@
 // Build Curvature-Aligned Quad Mesh: core/quad_mesh on the layer of lines.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include "filter_table.h"
 #include "help_text.h"
 #include "polygon_layer.h"
@@ -101,8 +103,8 @@ FilterResults apply(const FilterContext& context)
 			"the lines enclose no face; trace more of them (smaller 'epsilon', or set "
 			"'target_vertices').");
 
-	NewLayers  layers(context.document);
-	MeshModel& layer = layers.add("curvature-aligned mesh", lineLayer);
+	NewLayers          layers(context.document);
+	MeshModel&         layer    = layers.add("curvature-aligned mesh", lineLayer);
 	const MeshTopology topology = writePolygons(layer, built.mesh, prepared);
 	layers.keep(layer);
 
@@ -123,7 +125,8 @@ FilterSpec quadMeshFilter()
 		"Builds the mesh between lines of curvature: its vertices are the crossings of the two "
 		"families of lines, its edges run along the lines, and most of its faces are "
 		"quadrilaterals."
-		"<br><br><b>Input.</b> The current layer must be a <i>lines of curvature</i> layer; the point "
+		"<br><br><b>Input.</b> The current layer must be a <i>lines of curvature</i> layer; the "
+		"point "
 		"cloud they were traced on must still be there, unchanged."
 		"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in MeshLab: "
 		"triangles whose inner edges are hidden) and makes it current. Save it as OBJ: PLY drops "

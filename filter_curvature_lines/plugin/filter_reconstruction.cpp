@@ -1,5 +1,7 @@
-// Surface Reconstruction: Curvature-Aligned Quads: core/reconstruction, the whole pipeline, on a layer.
+// Surface Reconstruction: Curvature-Aligned Quads: core/reconstruction (A09 fig. 1) on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "filter_table.h"
 #include "help_text.h"
 #include "polygon_layer.h"
@@ -126,8 +128,7 @@ void writeCleanedCloud(
 	points.normals = result.cloud.normals;
 	writePositions(layer, points, own, result.cloud.positions);
 	writeNormals(layer, points, own, result.cloud.normals);
-	const VertexCurvatures values =
-		perVertex(points, own, result.field, result.umbilics.umbilic);
+	const VertexCurvatures values = perVertex(points, own, result.field, result.umbilics.umbilic);
 	writeCurvature(layer, points, values);
 	writeQuality(layer, points, 0.5 * (values.k1 + values.k2));
 }
@@ -140,7 +141,8 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 		std::count(result.umbilics.umbilic.begin(), result.umbilics.umbilic.end(), char(1)));
 	results.count("lines", result.lines.lines());
 	results.count(
-		"closed_lines", std::count(result.lines.closed.begin(), result.lines.closed.end(), char(1)));
+		"closed_lines",
+		std::count(result.lines.closed.begin(), result.lines.closed.end(), char(1)));
 	results.real("epsilon", result.lines.epsilon);
 	for (const auto& [stage, seconds] : result.seconds)
 		results.seconds(stage, seconds);
@@ -157,7 +159,7 @@ FilterResults apply(const FilterContext& context)
 	LayerPoints      points = readPoints(source);
 	FilterResults    results;
 	Stopwatch        total;
-	const bool       estimated = estimate == EstimateNormals::Always ||
+	const bool estimated = estimate == EstimateNormals::Always ||
 						   (estimate == EstimateNormals::IfMissing && mostNormalsMissing(points));
 	if (estimated) {
 		estimateMissingNormals(points, context.progress.sub(0.0, 0.1, "Estimating normals"));
@@ -174,17 +176,17 @@ FilterResults apply(const FilterContext& context)
 		throw MLException(
 			"no face was found between the lines of curvature (" +
 			QString::number(result.lines.lines()) +
-			" lines): the surface is flat or umbilic everywhere, or the cloud is too sparse for the "
+			" lines): the surface is flat or umbilic everywhere, or the cloud is too sparse for "
+			"the "
 			"chosen density. Raise 'target_vertices', or check that the normals are right.");
 
-	NewLayers  layers(context.document);
+	NewLayers layers(context.document);
 	if (intermediates) {
 		MeshModel& cleaned = layers.add("cleaned cloud", source);
 		writeCleanedCloud(cleaned, result, prepared);
-		writeLines(
-			layers.add("lines of curvature", source), result.lines, prepared, cleaned.id());
+		writeLines(layers.add("lines of curvature", source), result.lines, prepared, cleaned.id());
 	}
-	MeshModel& layer = layers.add("curvature-aligned mesh", source);
+	MeshModel&         layer    = layers.add("curvature-aligned mesh", source);
 	const MeshTopology topology = writePolygons(layer, result.mesh.mesh, prepared);
 	layers.keep(layer);
 
@@ -214,7 +216,8 @@ FilterSpec reconstructionFilter()
 		"the faces between them built." +
 			helpInput +
 			" This filter can estimate missing normals itself."
-			"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in MeshLab: "
+			"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in "
+			"MeshLab: "
 			"triangles whose inner edges are hidden) and makes it current; the input stays as it "
 			"is. Save the mesh as OBJ: PLY drops polygons." +
 			helpConventions + helpReference,

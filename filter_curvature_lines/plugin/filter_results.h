@@ -1,4 +1,4 @@
-// The dictionary a filter returns. Hosts pass on int, double and bool only; anything else is dropped.
+// The dictionary a filter returns. Hosts pass on int, double and bool only and drop the rest.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -29,10 +29,7 @@ private:
 
 class Stopwatch {
 public:
-	double seconds() const
-	{
-		return std::chrono::duration<double>(Clock::now() - m_start).count();
-	}
+	double seconds() const { return std::chrono::duration<double>(Clock::now() - m_start).count(); }
 	// Time since the start or the last lap.
 	double lap()
 	{
@@ -42,7 +39,7 @@ public:
 	}
 
 private:
-	using Clock             = std::chrono::steady_clock;
+	using Clock               = std::chrono::steady_clock;
 	Clock::time_point m_start = Clock::now();
 };
 

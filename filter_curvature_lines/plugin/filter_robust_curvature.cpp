@@ -54,13 +54,20 @@ double scalarOf(Scalar scalar, const VertexCurvatures& values, Index i)
 {
 	const double k1 = values.k1[i], k2 = values.k2[i];
 	switch (scalar) {
-	case Scalar::Mean: return 0.5 * (k1 + k2);
-	case Scalar::Gaussian: return k1 * k2;
-	case Scalar::K1: return k1;
-	case Scalar::K2: return k2;
-	case Scalar::Curvedness: return curvedness(k1, k2);
-	case Scalar::ShapeIndex: return shapeIndex(k1, k2);
-	case Scalar::Confidence: return values.confidence[i];
+	case Scalar::Mean:
+		return 0.5 * (k1 + k2);
+	case Scalar::Gaussian:
+		return k1 * k2;
+	case Scalar::K1:
+		return k1;
+	case Scalar::K2:
+		return k2;
+	case Scalar::Curvedness:
+		return curvedness(k1, k2);
+	case Scalar::ShapeIndex:
+		return shapeIndex(k1, k2);
+	case Scalar::Confidence:
+		return values.confidence[i];
 	}
 	return 0.0;
 }
@@ -71,7 +78,9 @@ void correctNormals(LayerPoints& points, const CurvatureEstimate& first)
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = first.prepared.representative[i]; r >= 0)
 			points.normals.col(i) =
-				first.field.correctedNormals.col(r).cast<Scalarm>().cast<double>();
+				onSideOf(first.field.correctedNormals.col(r), points.normals.col(i))
+					.cast<Scalarm>()
+					.cast<double>();
 }
 
 void reportCounts(
@@ -89,8 +98,7 @@ void reportCounts(
 	results.count("invalid", counts[PointStatus::Invalid]);
 	results.count("duplicates", estimate.prepared.duplicates);
 	results.count("iterations", estimate.field.iterations);
-	results.real(
-		"median_spacing", estimate.minimum.medianSpacing * estimate.prepared.diagonal);
+	results.real("median_spacing", estimate.minimum.medianSpacing * estimate.prepared.diagonal);
 }
 
 FilterResults apply(const FilterContext& context)
@@ -108,7 +116,8 @@ FilterResults apply(const FilterContext& context)
 	FilterResults results;
 	Stopwatch     total, stage;
 	if (correct) {
-		correctNormals(points, CurvatureEstimate(points, options, context.progress.sub(0, 0.5, "")));
+		correctNormals(
+			points, CurvatureEstimate(points, options, context.progress.sub(0, 0.5, "")));
 		results.seconds("normals", stage.lap());
 	}
 	const auto estimate =
@@ -155,10 +164,12 @@ FilterSpec robustCurvatureFilter()
 		"that disagree less weight, down to none, so that points across a sharp edge do not "
 		"count." +
 			helpInput +
-			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); vertex "
+			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); "
+			"vertex "
 			"quality and colour; and the vertex attributes <tt>curv_k1</tt>, <tt>curv_k2</tt>, "
 			"<tt>curv_confidence</tt>, <tt>curv_error</tt> (standard error of k1 - k2), "
-			"<tt>curv_scale</tt> (radius used) and <tt>curv_status</tt> (0 ok, 1 boundary, 2 too few "
+			"<tt>curv_scale</tt> (radius used) and <tt>curv_status</tt> (0 ok, 1 boundary, 2 too "
+			"few "
 			"neighbours, 3 umbilic, 4 isolated, 5 invalid). Points without an estimate get "
 			"curvature 0." +
 			helpConventions + helpReference,

@@ -27,7 +27,8 @@ RichParameterList parameters(const MeshDocument&)
 		"sensitivity",
 		Scalarm(defaults.sensitivity),
 		"Sensitivity",
-		"Robust mode: heights above this many noise units are votes against the point (0.5 to 100). "
+		"Robust mode: heights above this many noise units are votes against the point (0.5 to "
+		"100). "
 		"Smaller values reject more."));
 	list.addParam(RichFloat(
 		"vote_threshold",
@@ -84,13 +85,13 @@ FilterResults apply(const FilterContext& context)
 	options.rounds        = parameters.integer("rounds", 1, 20);
 	const bool erase      = parameters.flag("delete_selected");
 
-	MeshModel&          layer    = currentLayer(context.document);
-	const LayerPoints   points   = readOrientedPoints(layer);
+	MeshModel&          layer  = currentLayer(context.document);
+	const LayerPoints   points = readOrientedPoints(layer);
 	Stopwatch           total;
 	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
 	const OutlierResult rejected = rejectOutliers(prepared.cloud, options, context.progress);
 
-	// A point at no place is no part of the surface; one that only lacks its normal cannot be judged.
+	// A point nowhere is no part of the surface; one that only lacks its normal cannot be judged.
 	std::vector<std::size_t> selected;
 	std::vector<char>        isSelected(layer.cm.vert.size(), 0);
 	for (Index i = 0; i < points.size(); ++i) {
@@ -132,7 +133,8 @@ FilterSpec selectOutliersFilter()
 		"against it than the threshold allows, or with nothing around it, is an outlier. The "
 		"estimate is then repeated without them." +
 			helpInput +
-			"<br><br><b>Writes</b> the vertex selection (the former one is replaced), or deletes the "
+			"<br><br><b>Writes</b> the vertex selection (the former one is replaced), or deletes "
+			"the "
 			"outliers on request. Points with non-finite coordinates are selected, too. The noise "
 			"it reports is the standard deviation of heights, in the layer's units." +
 			helpReference,

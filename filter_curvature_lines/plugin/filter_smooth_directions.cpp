@@ -49,9 +49,9 @@ FilterResults apply(const FilterContext& context)
 		context.progress.sub(0.7, 1.0, "Smoothing directions"));
 	results.seconds("smoothing", stage.lap());
 
-	CurvatureField field = *curvature.field;
-	field.d1             = std::move(smoothed.d1);
-	field.d2             = std::move(smoothed.d2);
+	CurvatureField field          = *curvature.field;
+	field.d1                      = std::move(smoothed.d1);
+	field.d2                      = std::move(smoothed.d2);
 	const UmbilicRegions umbilics = findUmbilics(estimate.prepared.cloud, field, estimate.minimum);
 	writeCurvature(layer, points, perVertex(points, estimate.prepared, field, umbilics.umbilic));
 
@@ -73,13 +73,16 @@ FilterSpec smoothDirectionsFilter()
 	return {
 		"Smooth Principal Directions",
 		"apply_curvature_direction_smoothing_per_vertex",
-		"Smooths the field of principal directions of a point cloud as a whole: each direction stays "
+		"Smooths the field of principal directions of a point cloud as a whole: each direction "
+		"stays "
 		"near its estimate where the curvature is anisotropic, and follows its neighbours where it "
 		"is not (near umbilics, on flat parts, under noise). Directions do not mix across sharp "
 		"edges." +
 			helpInput +
-			"<br><br><b>Writes</b> PD1 and PD2 (and K1, K2 and the <tt>curv_*</tt> attributes that go "
-			"with them). Applied again, it smooths further. <i>Trace Lines of Curvature</i> follows "
+			"<br><br><b>Writes</b> PD1 and PD2 (and K1, K2 and the <tt>curv_*</tt> attributes that "
+			"go "
+			"with them). Applied again, it smooths further. <i>Trace Lines of Curvature</i> "
+			"follows "
 			"the smoothed directions." +
 			helpChaining + helpConventions + helpReference,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::Smoothing,

@@ -1,4 +1,4 @@
-// One table of filters: what each is called, where MeshLab lists it, what it takes and what it does.
+// One table of filters: what each is called, where MeshLab lists it, what it takes and does.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -20,12 +20,12 @@ struct FilterContext {
 };
 
 struct FilterSpec {
-	QString name;       // menu text and key in .mlx files: never change it
-	QString pythonName;
-	QString help;       // HTML
-	int     filterClass; // FilterPlugin::FilterClass, or-ed
+	QString                   name; // menu text and key in .mlx files: never change it
+	QString                   pythonName;
+	QString                   help;        // HTML
+	int                       filterClass; // FilterPlugin::FilterClass, or-ed
 	FilterPlugin::FilterArity arity;
-	int     preConditions, postCondition; // MeshModel::MeshElement, or-ed
+	int                       preConditions, postCondition; // MeshModel::MeshElement, or-ed
 	// Must be cheap and never throw: hosts call it for documents without a usable layer.
 	RichParameterList (*parameters)(const MeshDocument&);
 	// Read layer, call core, write layer. Leaves the document untouched when it throws.

@@ -1,5 +1,7 @@
 // Trace Lines of Curvature: core/line_tracing on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "filter_table.h"
 #include "help_text.h"
 #include "polyline_layer.h"
@@ -61,7 +63,8 @@ RichParameterList parameters(const MeshDocument&)
 		"smooth_directions",
 		true,
 		"Smooth the directions",
-		"Smooth the principal directions first, unless those on the layer are smoothed already. The "
+		"Smooth the principal directions first, unless those on the layer are smoothed already. "
+		"The "
 		"layer keeps its own."));
 	return list;
 }
@@ -135,8 +138,7 @@ FilterResults apply(const FilterContext& context)
 
 	results.count("points", points.size());
 	results.count("invalid", estimate.prepared.nonFinite + estimate.prepared.zeroNormals);
-	results.count(
-		"umbilic", std::count(umbilics.umbilic.begin(), umbilics.umbilic.end(), char(1)));
+	results.count("umbilic", std::count(umbilics.umbilic.begin(), umbilics.umbilic.end(), char(1)));
 	results.count("umbilic_regions", umbilics.regions);
 	results.count("lines", lines.lines());
 	results.count("lines_family_1", std::count(lines.family.begin(), lines.family.end(), 1));
@@ -157,11 +159,13 @@ FilterSpec traceLinesFilter()
 	return {
 		"Trace Lines of Curvature",
 		"generate_curvature_lines",
-		"Traces the lines of curvature of a point cloud, the curves that follow the two families of "
+		"Traces the lines of curvature of a point cloud, the curves that follow the two families "
+		"of "
 		"principal directions, without a mesh. Lines start where the curvature estimate is most "
 		"reliable; they are as dense as the curvature across them asks for." +
 			helpInput +
-			"<br><br><b>Writes</b> a new layer <i>lines of curvature</i> of vertices and edges, and "
+			"<br><br><b>Writes</b> a new layer <i>lines of curvature</i> of vertices and edges, "
+			"and "
 			"makes it current: normals, quality (the curvature along the line), colour (orange "
 			"along PD1, blue along PD2) and the vertex attributes <tt>line_id</tt> and "
 			"<tt>line_family</tt> (1 or 2). <i>Build Curvature-Aligned Quad Mesh</i> goes on from "

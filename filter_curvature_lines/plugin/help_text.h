@@ -1,5 +1,5 @@
-// Paragraphs that several filters' help texts share (HTML; the same text feeds MeshLab's dialogs and
-// PyMeshLab's documentation).
+// Paragraphs that several filters' help texts share (HTML; the same text feeds MeshLab's dialogs
+// and PyMeshLab's documentation).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -8,7 +8,8 @@
 namespace curvature_lines {
 
 inline const QString helpInput =
-	"<br><br><b>Input.</b> A point cloud with oriented normals that point outward; no mesh is needed "
+	"<br><br><b>Input.</b> A point cloud with oriented normals that point outward; no mesh is "
+	"needed "
 	"(if the layer has faces, its vertices are the points). Points with non-finite coordinates or "
 	"without a normal take no part; exact duplicates count as one point. If the layer has no "
 	"normals, run <i>Compute normals for point sets</i> first.";
@@ -16,7 +17,8 @@ inline const QString helpInput =
 inline const QString helpConventions =
 	"<br><br><b>Conventions.</b> Convex is positive: a unit sphere with outward normals has "
 	"k1 = k2 = +1. k1 &gt;= k2 by signed value; PD1, PD2 and the normal are unit vectors at right "
-	"angles. Lengths are in the layer's own units and curvatures in 1/length; the layer's matrix is "
+	"angles. Lengths are in the layer's own units and curvatures in 1/length; the layer's matrix "
+	"is "
 	"not applied, so if it scales, freeze it first to get curvatures in world units. The result is "
 	"the same for any number of threads.";
 

@@ -14,7 +14,7 @@ Progress hostProgress(vcg::CallBackPos* callback)
 
 	using Clock = std::chrono::steady_clock;
 	struct State {
-		Clock::time_point last = Clock::now() - std::chrono::hours(1);
+		Clock::time_point last    = Clock::now() - std::chrono::hours(1);
 		int               percent = 0;
 	};
 	// Shared, because Progress is copied for every sub-stage.

@@ -1,5 +1,5 @@
-// MeshLab's progress callback behind core's Progress: on the main thread, at most ten times a second,
-// never backwards, and a refusal cancels the stage.
+// MeshLab's progress callback behind core's Progress: on the main thread, at most ten times a
+// second, never backwards, and a refusal cancels the stage.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -34,18 +34,15 @@ Point3m toPoint(const Eigen::Vector3d& v)
 
 Eigen::Vector3d unitNormal(const LayerPoints& points, Index i)
 {
-	const Eigen::Vector3d n = points.normals.col(i);
+	const Eigen::Vector3d n      = points.normals.col(i);
 	const double          length = n.stableNorm();
-	return std::isfinite(length) && length > 0.0 ? Eigen::Vector3d(n / length) :
-												   Eigen::Vector3d::UnitZ();
+	return std::isfinite(length) && length > 0.0 ? Eigen::Vector3d(n / length)
+												 : Eigen::Vector3d::UnitZ();
 }
 
 // A right-handed tangent pair at n, as near to d as possible.
 void tangentPair(
-	const Eigen::Vector3d& d,
-	const Eigen::Vector3d& n,
-	Eigen::Vector3d&       d1,
-	Eigen::Vector3d&       d2)
+	const Eigen::Vector3d& d, const Eigen::Vector3d& n, Eigen::Vector3d& d1, Eigen::Vector3d& d2)
 {
 	const Eigen::Vector3d tangent = d - n * n.dot(d);
 	d1 = tangent.norm() > 1e-6 ? Eigen::Vector3d(tangent.normalized()) : TangentFrame(n).u;
@@ -129,9 +126,9 @@ VertexCurvatures perVertex(
 			values.error[i]      = field.error[r] / prepared.diagonal;
 			values.radius[i]     = field.radius[r] * prepared.diagonal;
 			values.confidence[i] = field.confidence[r];
-			values.status[i]     = field.status[r] == PointStatus::Ok && umbilic[r] ?
-									   PointStatus::Umbilic :
-									   field.status[r];
+			values.status[i]     = field.status[r] == PointStatus::Ok && umbilic[r]
+									   ? PointStatus::Umbilic
+									   : field.status[r];
 		}
 		values.d1.col(i) = d1;
 		values.d2.col(i) = d2;
@@ -201,6 +198,11 @@ void writeColorRamp(
 		layer.cm, estimates[last / 10], estimates[last - last / 10]);
 }
 
+Eigen::Vector3d onSideOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& present)
+{
+	return normal.dot(present) < 0.0 ? Eigen::Vector3d(-normal) : normal;
+}
+
 void writePositions(
 	MeshModel&              layer,
 	const LayerPoints&      points,
@@ -209,8 +211,7 @@ void writePositions(
 {
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = prepared.representative[i]; r >= 0)
-			layer.cm.vert[points.vertex[i]].P() =
-				toPoint(prepared.toModel(unitPositions.col(r)));
+			layer.cm.vert[points.vertex[i]].P() = toPoint(prepared.toModel(unitPositions.col(r)));
 	vcg::tri::UpdateBounding<CMeshO>::Box(layer.cm);
 	if (layer.cm.fn > 0)
 		vcg::tri::UpdateNormal<CMeshO>::PerFaceNormalized(layer.cm);
@@ -224,7 +225,8 @@ void writeNormals(
 {
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = prepared.representative[i]; r >= 0)
-			layer.cm.vert[points.vertex[i]].N() = toPoint(normals.col(r));
+			layer.cm.vert[points.vertex[i]].N() =
+				toPoint(onSideOf(normals.col(r), points.normals.col(i)));
 }
 
 bool carriesCurvature(
@@ -232,8 +234,8 @@ bool carriesCurvature(
 {
 	if (!layer.hasDataMask(MeshModel::MM_VERTCURVDIR))
 		return false;
-	const VertexCurvatures values =
-		perVertex(points, estimate.prepared, estimate.field, std::vector<char>(estimate.field.size()));
+	const VertexCurvatures values = perVertex(
+		points, estimate.prepared, estimate.field, std::vector<char>(estimate.field.size()));
 	for (Index i = 0; i < points.size(); ++i) {
 		const CVertexO& vertex = layer.cm.vert[points.vertex[i]];
 		if (vertex.cK1() != toScalar(values.k1[i]) || vertex.cK2() != toScalar(values.k2[i]))
@@ -245,8 +247,8 @@ bool carriesCurvature(
 bool carriesDirections(
 	const MeshModel& layer, const LayerPoints& points, const CurvatureEstimate& estimate)
 {
-	const VertexCurvatures values =
-		perVertex(points, estimate.prepared, estimate.field, std::vector<char>(estimate.field.size()));
+	const VertexCurvatures values = perVertex(
+		points, estimate.prepared, estimate.field, std::vector<char>(estimate.field.size()));
 	for (Index i = 0; i < points.size(); ++i)
 		if (layer.cm.vert[points.vertex[i]].cPD1() != toPoint(values.d1.col(i)))
 			return false;

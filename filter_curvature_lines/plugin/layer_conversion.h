@@ -10,8 +10,6 @@
 namespace curvature_lines {
 
 struct CurvatureEstimate;
-struct MinimumNeighborhoods;
-struct UmbilicRegions;
 
 // The current layer; throws when the document has none.
 MeshModel& currentLayer(MeshDocument& document);
@@ -55,6 +53,10 @@ void writeAttribute(
 	const std::string&     name,
 	const Eigen::VectorXd& values);
 
+// A new normal for a vertex, on the side of its present one: of two sheets in the same place, each
+// keeps its own side.
+Eigen::Vector3d onSideOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& present);
+
 // Coordinates or normals of the prepared points go to all their vertices; the others stay.
 void writePositions(
 	MeshModel&              layer,
@@ -83,7 +85,7 @@ public:
 	~NewLayers();
 	NewLayers(const NewLayers&) = delete;
 
-	// An empty layer with the matrix of `source`. No dots in labels: hosts take them for file names.
+	// An empty layer with the matrix of `source`. Hosts take labels with dots for file names.
 	MeshModel& add(const QString& label, const MeshModel& source);
 	void       keep(const MeshModel& current);
 

@@ -31,8 +31,7 @@ Index Parameters::integer(const QString& name, int min, int max) const
 {
 	const int value = m_list.getInt(name);
 	if (value < min || value > max)
-		throw outOfRange(
-			name, QString::number(value), QString("from %1 to %2").arg(min).arg(max));
+		throw outOfRange(name, QString::number(value), QString("from %1 to %2").arg(min).arg(max));
 	return value;
 }
 
@@ -40,8 +39,7 @@ double Parameters::real(const QString& name, double min, double max) const
 {
 	const double value = m_list.getFloat(name);
 	if (!(value >= min - slack * std::abs(min) && value <= max + slack * std::abs(max)))
-		throw outOfRange(
-			name, QString::number(value), QString("from %1 to %2").arg(min).arg(max));
+		throw outOfRange(name, QString::number(value), QString("from %1 to %2").arg(min).arg(max));
 	return value;
 }
 
@@ -55,9 +53,9 @@ double Parameters::length(const QString& name) const
 
 int Parameters::choice(const QString& name) const
 {
-	const int  value   = m_list.getEnum(name);
-	const auto* choices = dynamic_cast<const RichEnum*>(&m_list.getParameterByName(name));
-	const QStringList labels = choices ? choices->enumvalues : QStringList();
+	const int         value   = m_list.getEnum(name);
+	const auto*       choices = dynamic_cast<const RichEnum*>(&m_list.getParameterByName(name));
+	const QStringList labels  = choices ? choices->enumvalues : QStringList();
 	if (value < 0 || value >= labels.size())
 		throw outOfRange(
 			name,

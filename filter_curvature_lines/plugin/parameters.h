@@ -1,5 +1,5 @@
-// Reading of parameters with validation (MeshLab gives ints and floats no range), and the declarations
-// several filters share.
+// Reading of parameters with validation (MeshLab gives ints and floats no range), and the
+// declarations several filters share.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -20,8 +20,8 @@ public:
 	// A length in model units, 0 = automatic.
 	double length(const QString& name) const;
 	// Position in the list of labels.
-	int    choice(const QString& name) const;
-	int    layerId(const QString& name) const;
+	int choice(const QString& name) const;
+	int layerId(const QString& name) const;
 
 private:
 	RichParameterList m_list;

@@ -18,13 +18,13 @@ Point3m toPoint(const Eigen::Vector3d& v)
 
 // A triangulated polygon mesh that remembers its polygons.
 struct Triangulation {
-	PolygonMesh        mesh;    // triangles; vertices beyond those of the polygons are hubs of stars
+	PolygonMesh        mesh; // triangles; vertices beyond those of the polygons are hubs of stars
 	std::vector<Index> polygon; // of each triangle
 	std::vector<char>  inner;   // per triangle corner: the side that starts there is a diagonal
 };
 
-// Triangulated as a whole, because a diagonal that is an edge elsewhere makes a non-manifold mesh, and
-// hosts hang on saving polygons of such.
+// Triangulated as a whole, because a diagonal that is an edge elsewhere makes a non-manifold mesh,
+// and hosts hang on saving polygons of such.
 Triangulation triangulate(const PolygonMesh& polygons)
 {
 	using Side = std::pair<Index, Index>; // directed
@@ -46,7 +46,7 @@ Triangulation triangulate(const PolygonMesh& polygons)
 	std::vector<Index> front;
 	for (Index t = 0; t < triangles.size(); ++t)
 		for (int c = 0; c < 3; ++c) {
-			const Side side {triangles[t][c], triangles[t][(c + 1) % 3]};
+			const Side side{triangles[t][c], triangles[t][(c + 1) % 3]};
 			const auto found = polygonOf.find(side);
 			if (found == polygonOf.end()) {
 				result.inner[3 * t + c] = 1;

@@ -1,4 +1,4 @@
-// Polygon meshes as MeshLab holds them: triangles whose inner edges carry the faux bit on both sides.
+// Polygon meshes as MeshLab holds them: triangles whose inner edges are faux on both sides.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -15,7 +15,7 @@ namespace curvature_lines {
 MeshTopology
 writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud& frame);
 
-// What the filters that end in a mesh share: parameters triangulate and close_holes, and the counts.
+// What the filters that end in a mesh share: two parameters and the counts.
 void            addMeshParameters(RichParameterList& list);
 QuadMeshOptions meshOptions(const Parameters& parameters);
 void            reportMesh(FilterResults& results, const MeshTopology& topology);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "polyline_layer.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -64,7 +65,8 @@ std::vector<std::vector<Index>> neighborsAlongEdges(const CMeshO& mesh)
 	for (const auto& row : neighbors)
 		if (row.size() > 2)
 			throw MLException(
-				"the lines of the current layer branch; 'Trace Lines of Curvature' makes lines that "
+				"the lines of the current layer branch; 'Trace Lines of Curvature' makes lines "
+				"that "
 				"do not.");
 	return neighbors;
 }
@@ -151,7 +153,7 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 			"line_family, which files do not keep). Run 'Trace Lines of Curvature' "
 			"(generate_curvature_lines) on the point cloud first and leave its layer current.");
 
-	Chains chains = chainsOf(mesh);
+	Chains                   chains = chainsOf(mesh);
 	std::vector<std::size_t> order(chains.vertices.size());
 	for (std::size_t l = 0; l < order.size(); ++l)
 		order[l] = l;
@@ -170,7 +172,7 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 		if (lineFamily != 1 && lineFamily != 2)
 			throw MLException("the attribute line_family of the current layer must be 1 or 2.");
 		for (const Index v : chains.vertices[l]) {
-			const CVertexO& vertex = mesh.vert[v];
+			const CVertexO& vertex      = mesh.vert[v];
 			lines.vertices.col(written) = frame.toUnit(toEigen(vertex.cP()));
 			lines.normals.col(written)  = toEigen(vertex.cN()).normalized();
 			lines.curvature[written++]  = double(vertex.cQ()) * frame.diagonal;

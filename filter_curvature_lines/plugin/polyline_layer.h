@@ -1,5 +1,5 @@
-// Lines of curvature as a layer of vertices and edges, and back. Hosts give edges no data of their own,
-// so what belongs to a line is stored on its vertices.
+// Lines of curvature as a layer of vertices and edges, and back. Hosts give edges no data of their
+// own, so what belongs to a line is stored on its vertices.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -25,7 +25,7 @@ from helpers import (
 )
 
 RNG = np.random.default_rng(5)
-QUICK = {DENOISE: {"iterations": 3}, TRACE: {"epsilon": 0.01}, PIPELINE: {"denoise": False}}
+QUICK = {DENOISE: {"iterations": 3}, TRACE: {"epsilon": 0.01}, PIPELINE: {"denoise": False, "reject_outliers": False}}
 
 
 @pytest.fixture(scope="module")
@@ -242,6 +242,15 @@ def test_two_sheets_in_the_same_place(torus):
     np.testing.assert_allclose(values["curv_k1"][count:], -values["curv_k2"][:count], atol=1e-9)
     np.testing.assert_allclose(values["curv_k2"][count:], -values["curv_k1"][:count], atol=1e-9)
     assert np.median(np.abs(values["curv_k1"][:count] - torus["k1"])) < 0.1
+
+
+def test_corrected_normals_of_two_sheets_in_the_same_place_stay_opposite(torus):
+    meshes = layer(np.vstack([torus["positions"]] * 2), np.vstack([torus["normals"], -torus["normals"]]))
+    for name, parameters in [(CURVATURE, {"correct_normals": True}), (DENOISE, {})]:
+        apply(meshes, name, **parameters)
+        front, back = np.split(meshes.current_mesh().vertex_normal_matrix(), 2)
+        np.testing.assert_array_equal(front, -back)
+        assert np.all(np.einsum("ij,ij->i", front, torus["normals"]) > 0.5)
 
 
 @pytest.mark.parametrize("name", ON_CLOUDS)

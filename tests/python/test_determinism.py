@@ -9,7 +9,7 @@ from pathlib import Path
 CHAIN = """
 import hashlib, helpers
 helpers.load_plugin()
-meshes = helpers.layer_of(helpers.generate("torus", 1200, noise=0.003, outliers=0.02, seed=1, scanned=True))
+meshes = helpers.layer_of(helpers.generate("torus", 800, noise=0.003, outliers=0.02, seed=1, scanned=True))
 for name, parameters in [
     (helpers.CURVATURE, {}),
     (helpers.OUTLIERS, {"delete_selected": True}),
@@ -38,8 +38,7 @@ def run(threads):
     return [line for line in result.stdout.splitlines() if len(line.split()) == 2 and len(line.split()[1]) == 64]
 
 
-def test_chain_is_the_same_for_any_number_of_threads():
+def test_chain_is_the_same_on_one_thread_and_on_two():
     first = run(1)
     assert len(first) == 6 and len(set(first)) == 6
-    for threads in (2, 3):
-        assert run(threads) == first
+    assert run(2) == first

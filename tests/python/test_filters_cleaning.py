@@ -9,7 +9,7 @@ from helpers import CURVATURE, DENOISE, OUTLIERS, analytic_surfaces, check_repor
 
 @pytest.fixture(scope="module")
 def dirty():
-    return generate("torus", 1500, noise=0.0025, outliers=0.05, seed=3, scanned=True)
+    return generate("torus", 1200, noise=0.0025, outliers=0.05, seed=3, scanned=True)
 
 
 def distances(positions):

@@ -35,6 +35,7 @@ MESH_COUNTS = [
     "components",
 ]
 EPSILON = 0.005
+QUICK = {"denoise": False, "reject_outliers": False}
 
 
 @pytest.fixture(scope="module")
@@ -290,7 +291,7 @@ def test_pipeline_on_a_dirty_scan():
 
 def test_pipeline_keeps_intermediate_layers(torus):
     meshes = layer_of(torus)
-    meshes.apply_filter(PIPELINE, denoise=False, keep_intermediate_layers=True)
+    meshes.apply_filter(PIPELINE, keep_intermediate_layers=True, **QUICK)
     labels = [mesh.label() for mesh in meshes]
     assert labels[1:] == ["cleaned cloud", "lines of curvature", "curvature-aligned mesh"]
     assert meshes.current_mesh_id() == 3
@@ -307,7 +308,7 @@ def test_pipeline_keeps_intermediate_layers(torus):
 @pytest.mark.parametrize("choice, normals, estimated", [("If Missing", False, True), ("If Missing", True, False), ("Always", True, True)])
 def test_pipeline_estimates_normals(torus, choice, normals, estimated):
     meshes = layer(torus["positions"], torus["normals"] if normals else None)
-    report = meshes.apply_filter(PIPELINE, denoise=False, reject_outliers=False, estimate_normals=choice)
+    report = meshes.apply_filter(PIPELINE, estimate_normals=choice, **QUICK)
     assert report["normals_estimated"] is estimated and report["faces"] > 50
     truth = analytic_surfaces.project("torus", meshes.current_mesh().vertex_matrix())["normals"]
     assert np.all(np.einsum("ij,ij->i", meshes.current_mesh().vertex_normal_matrix(), truth) > 0.5)
@@ -323,7 +324,7 @@ def test_pipeline_without_normals_is_refused_when_told_not_to_estimate(torus):
 def test_pipeline_density(torus):
     counts = []
     for parameters in ({"target_vertices": 60}, {"target_vertices": 200}, {"epsilon": 0.02}):
-        counts.append(layer_of(torus).apply_filter(PIPELINE, denoise=False, reject_outliers=False, **parameters)["vertices"])
+        counts.append(layer_of(torus).apply_filter(PIPELINE, **QUICK, **parameters)["vertices"])
     assert 40 < counts[0] < 90 and 130 < counts[1] < 300 and counts[2] < counts[1]
 
 

@@ -12,7 +12,7 @@ CHAINS = {
     "outliers": [(OUTLIERS, {"mode": "Paper", "vote_threshold": 0.6, "delete_selected": True})],
     "denoising": [(DENOISE, {"iterations": 5, "energy": "Squared", "neighbors": "Nearest"})],
     "lines_and_mesh": [(SMOOTH, {"alpha": 0.7}), (TRACE, {"target_vertices": 120}), (MESH, {"triangulate": True})],
-    "pipeline": [(PIPELINE, {"target_vertices": 80, "denoise": False, "keep_intermediate_layers": True})],
+    "pipeline": [(PIPELINE, {"target_vertices": 80, "denoise": False, "reject_outliers": False, "keep_intermediate_layers": True})],
 }
 
 

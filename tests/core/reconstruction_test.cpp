@@ -1,0 +1,194 @@
+// The whole pipeline on exact surfaces: topology and distance of the mesh, what each switch does,
+// threads, progress, degenerate clouds.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "core/reconstruction.h"
+#include "sample_data/analytic_surfaces.h"
+
+namespace curvature_lines {
+namespace {
+
+struct Scan {
+	samples::SampleCloud sample;
+	PreparedCloud        prepared;
+};
+
+Scan scanOf(const samples::SampleRequest& request)
+{
+	Scan scan{samples::generate(request), {}};
+	scan.prepared = prepareCloud(scan.sample.positions, scan.sample.normals);
+	return scan;
+}
+
+samples::SampleRequest torus(int points, double noise = 0.0, double outliers = 0.0)
+{
+	samples::SampleRequest request;
+	request.points      = points;
+	request.noise       = noise;
+	request.farOutliers = outliers;
+	request.seed        = 7;
+	return request;
+}
+
+// RMS distance of unit-frame points to the surface, as a fraction of its diagonal.
+double
+distanceTo(const std::string& name, const PreparedCloud& frame, const Eigen::Matrix3Xd& positions)
+{
+	const samples::AnalyticSurface& surface = samples::surface(name);
+	double                          sum     = 0.0;
+	for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+		const Eigen::Vector3d p = frame.toModel(positions.col(i));
+		sum += (p - surface.project(p)).squaredNorm();
+	}
+	return std::sqrt(sum / double(positions.cols())) / surface.diagonal();
+}
+
+ReconstructionOptions quick()
+{
+	ReconstructionOptions options;
+	options.rejectOutliers = false;
+	options.denoise        = false;
+	return options;
+}
+
+TEST(Reconstruction, CleanTorusIsAQuadDominantTorus)
+{
+	const Scan                 scan   = scanOf(torus(2000));
+	const ReconstructionResult result = reconstruct(scan.prepared.cloud, quick());
+	const MeshTopology&        t      = result.mesh.topology;
+	EXPECT_EQ(t.eulerCharacteristic, 0);
+	EXPECT_EQ(t.components, 1);
+	EXPECT_EQ(t.boundaryEdges, 0);
+	EXPECT_EQ(t.nonmanifoldEdges, 0);
+	EXPECT_GT(t.quads, 0.6 * t.faces);
+	EXPECT_LT(distanceTo("torus", scan.prepared, result.mesh.mesh.vertices), 0.001);
+	EXPECT_LT(distanceTo("torus", scan.prepared, result.lines.vertices), 0.001);
+}
+
+TEST(Reconstruction, DirtyScanIsCleanedAndStaysManifold)
+{
+	const Scan                 scan   = scanOf(torus(1500, 0.005, 0.03));
+	const ReconstructionResult result = reconstruct(scan.prepared.cloud);
+	const MeshTopology&        t      = result.mesh.topology;
+	EXPECT_EQ(t.nonmanifoldEdges, 0);
+	EXPECT_GT(t.quads, 0.5 * t.faces);
+	EXPECT_LT(distanceTo("torus", scan.prepared, result.mesh.mesh.vertices), 0.005);
+	EXPECT_LT(
+		distanceTo("torus", scan.prepared, result.cloud.positions),
+		0.5 * distanceTo("torus", scan.prepared, scan.prepared.cloud.positions));
+	EXPECT_GT(result.rmsMove, 0.0);
+}
+
+TEST(Reconstruction, KeptPointsAndOutliersAreThePartsOfTheInput)
+{
+	const Scan            scan        = scanOf(torus(1000, 0.002, 0.05));
+	ReconstructionOptions options     = quick();
+	options.rejectOutliers            = true;
+	const ReconstructionResult result = reconstruct(scan.prepared.cloud, options);
+	const Index                n      = scan.prepared.cloud.size();
+	ASSERT_EQ(static_cast<Index>(result.outlier.size()), n);
+	ASSERT_EQ(result.cloud.size(), static_cast<Index>(result.kept.size()));
+	EXPECT_EQ(
+		result.cloud.size(), n - std::count(result.outlier.begin(), result.outlier.end(), char(1)));
+	EXPECT_LT(result.cloud.size(), n);
+	EXPECT_TRUE(std::is_sorted(result.kept.begin(), result.kept.end()));
+	for (Index i = 0; i < result.cloud.size(); ++i) {
+		EXPECT_FALSE(result.outlier[result.kept[i]]);
+		EXPECT_EQ(result.cloud.positions.col(i), scan.prepared.cloud.positions.col(result.kept[i]));
+	}
+}
+
+TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
+{
+	const Scan            scan        = scanOf(torus(800));
+	ReconstructionOptions options     = quick();
+	options.smoothDirections          = false;
+	const ReconstructionResult result = reconstruct(scan.prepared.cloud, options);
+	EXPECT_EQ(result.cloud.positions, scan.prepared.cloud.positions);
+	EXPECT_EQ(result.cloud.normals, scan.prepared.cloud.normals);
+	EXPECT_EQ(result.rmsMove, 0.0);
+	for (const char* stage : {"outliers", "denoising", "directions"})
+		EXPECT_EQ(result.seconds.count(stage), 0u) << stage;
+	for (const char* stage :
+		 {"neighborhoods", "curvature", "umbilics", "voronoi", "tracing", "mesh"})
+		EXPECT_EQ(result.seconds.count(stage), 1u) << stage;
+}
+
+TEST(Reconstruction, DensityFollowsTheCloudUnlessGiven)
+{
+	const Scan            scan     = scanOf(torus(1200));
+	ReconstructionOptions options  = quick();
+	const auto            vertices = [&] {
+		return double(reconstruct(scan.prepared.cloud, options).mesh.topology.vertices);
+	};
+	EXPECT_NEAR(vertices(), automaticTargetVertices(1200), 0.5 * automaticTargetVertices(1200));
+	options.tracing.targetVertices = 50;
+	EXPECT_NEAR(vertices(), 50, 25);
+	options.tracing.targetVertices = 0;
+	options.tracing.epsilon        = 0.02;
+	const double coarse            = vertices();
+	options.tracing.epsilon        = 0.004;
+	EXPECT_LT(coarse, vertices());
+}
+
+TEST(Reconstruction, IsTheSameForAnyNumberOfThreads)
+{
+	const Scan scan    = scanOf(torus(600, 0.003));
+	const int  threads = omp_get_max_threads();
+	omp_set_num_threads(1);
+	const ReconstructionResult one = reconstruct(scan.prepared.cloud);
+	omp_set_num_threads(3);
+	const ReconstructionResult three = reconstruct(scan.prepared.cloud);
+	omp_set_num_threads(threads);
+	EXPECT_EQ(one.outlier, three.outlier);
+	EXPECT_EQ(one.cloud.positions, three.cloud.positions);
+	ASSERT_EQ(one.mesh.mesh.vertexCount(), three.mesh.mesh.vertexCount());
+	EXPECT_EQ(one.mesh.mesh.vertices, three.mesh.mesh.vertices);
+	EXPECT_EQ(one.mesh.mesh.faces.indices, three.mesh.mesh.faces.indices);
+}
+
+TEST(Reconstruction, ProgressGoesForwardToTheEndAndCancels)
+{
+	const Scan scan = scanOf(torus(800));
+	double     last = 0.0;
+	reconstruct(scan.prepared.cloud, quick(), Progress([&](double fraction, const char*) {
+					EXPECT_GE(fraction, last - 1e-12);
+					last = fraction;
+					return true;
+				}));
+	EXPECT_DOUBLE_EQ(last, 1.0);
+
+	for (const double stop : {0.1, 0.5, 0.9})
+		EXPECT_THROW(
+			reconstruct(scan.prepared.cloud, quick(), Progress([&](double fraction, const char*) {
+							return fraction < stop;
+						})),
+			Cancelled);
+}
+
+TEST(Reconstruction, SmallAndFlatCloudsEndInAMeshOrAnInputError)
+{
+	for (const int points : {20, 40, 100})
+		for (const char* name : {"plane", "sphere", "cube"}) {
+			samples::SampleRequest request;
+			request.surface = name;
+			request.points  = points;
+			request.seed    = 3;
+			try {
+				const ReconstructionResult result = reconstruct(scanOf(request).prepared.cloud);
+				EXPECT_TRUE(result.mesh.mesh.vertices.allFinite()) << name << points;
+				EXPECT_EQ(result.mesh.topology.nonmanifoldEdges, 0) << name << points;
+			}
+			catch (const InputError& error) {
+				EXPECT_GT(std::string(error.what()).size(), 20u) << name << points;
+			}
+		}
+}
+
+} // namespace
+} // namespace curvature_lines

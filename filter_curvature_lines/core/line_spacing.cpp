@@ -15,6 +15,7 @@ constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says n
 constexpr double AutomaticMax = 0.1; // bounding-box diagonals
 constexpr double TargetRange  = 2.0; // with a target, up to so many times the mean distance and down to 1 / it
 constexpr double Gradation    = 0.25;
+constexpr int    BisectionSteps = 20; // to 3e-5 of epsilon
 // Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
 // slices' neighbours is 1.22 / sqrt(density).
 constexpr double ShareOfSpacing = 0.67;
@@ -29,21 +30,24 @@ void limitGrowth(
 {
 	using Entry = std::pair<double, Index>;
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-	for (Index i = 0; i < cloud.size(); ++i)
-		queue.emplace(d[i], i);
-	while (!queue.empty()) {
-		const auto [value, i] = queue.top();
-		queue.pop();
-		if (value > d[i])
-			continue;
+
+	const auto relax = [&](Index i) {
 		for (Index j : minimum.neighbors[i]) {
 			const double limit =
-				value + Gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
+				d[i] + Gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
 			if (limit < d[j]) {
 				d[j] = limit;
 				queue.emplace(limit, j);
 			}
 		}
+	};
+	for (Index i = 0; i < cloud.size(); ++i)
+		relax(i);
+	while (!queue.empty()) {
+		const auto [value, i] = queue.top();
+		queue.pop();
+		if (value <= d[i])
+			relax(i);
 	}
 }
 
@@ -136,13 +140,14 @@ LineSpacing chooseLineSpacing(
 	const Bounds bounds   = spacingBounds(minimum, options, diagonal, crossings);
 
 	LineSpacing result;
-	result.epsilon = options.epsilon * diagonal;
-	const auto at  = [&](double epsilon) {
-        return distances(cloud, field, minimum, epsilon, bounds.least, bounds.most);
+	result.diagonal = diagonal;
+	result.epsilon  = options.epsilon * diagonal;
+	const auto at   = [&](double epsilon) {
+		return distances(cloud, field, minimum, epsilon, bounds.least, bounds.most);
 	};
 	if (crossings > 0.0) {
 		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);
-		for (int k = 0; k < 50; ++k) {
+		for (int k = 0; k < BisectionSteps; ++k) {
 			const double middle = 0.5 * (low + high);
 			(predictedCrossings(minimum, at(std::exp(middle))) > crossings ? low : high) = middle;
 		}

@@ -10,7 +10,8 @@
 namespace curvature_lines {
 
 struct LineSpacing {
-	double                             epsilon = 0.0; // fraction of the bounding-box diagonal
+	double                             diagonal = 0.0; // of the cloud's bounding box
+	double                             epsilon  = 0.0; // fraction of it
 	std::array<std::vector<double>, 2> distance; // N per family: distance to keep from the next line
 };
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -111,6 +110,7 @@ private:
 	std::vector<FlowPoint> m_points; // of all finished lines
 	LineNetwork            m_network;
 };
+
 Tracer::Tracer(
 	const PointCloud&           cloud,
 	const CurvatureField&       field,
@@ -287,7 +287,7 @@ void Tracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
 {
 	FlowPoint front = start, next;
-	while (std::abs(front.arc) < MaxLength && advance(front, next)) {
+	while (std::abs(front.arc) < MaxLength * m_spacing.diagonal && advance(front, next)) {
 		if (leftCloud(next) || endsAtUmbilic(front, next))
 			break;
 		// A line that comes back next to its start would be stopped by it. The offset is noise, and closing
@@ -316,18 +316,15 @@ bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& pro
 // The sideways offset of a closed line's end from its start, spread over the last stretch.
 void Tracer::closeUp(const FlowPoint& start, Points& half)
 {
-	const FlowPoint& last  = half.back();
-	const Vector3d   gap   = start.position - last.position;
-	const Vector3d   aside = gap - gap.dot(last.direction) * last.direction;
-	const double     from  = std::max(0.0, last.arc - ClosingSpread * aside.norm());
-	const double     to    = last.arc;
-	if (!(aside.norm() > 0.0))
-		return;
+	const FlowPoint last  = half.back();
+	const Vector3d  gap   = start.position - last.position;
+	const Vector3d  aside = gap - gap.dot(last.direction) * last.direction;
+	const double    from  = std::max(0.0, last.arc - ClosingSpread * aside.norm());
 	for (FlowPoint& point : half) {
 		if (point.arc <= from)
 			continue;
 		FlowPoint moved = point;
-		if (sampleAt(point.position + (point.arc - from) / (to - from) * aside, point, moved)) {
+		if (sampleAt(point.position + (point.arc - from) / (last.arc - from) * aside, point, moved)) {
 			moved.arc = point.arc;
 			point     = moved;
 		}

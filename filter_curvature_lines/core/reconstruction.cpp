@@ -65,7 +65,8 @@ void keepInliers(const PointCloud& cloud, ReconstructionResult& result)
 
 Index automaticTargetVertices(Index n)
 {
-	return std::max<Index>(50, n / 16);
+	constexpr Index fewFaces = 500;
+	return std::max(n / 16, std::min(n / 4, fewFaces));
 }
 
 ReconstructionResult

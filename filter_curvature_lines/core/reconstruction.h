@@ -47,8 +47,8 @@ ReconstructionResult reconstruct(
 	const ReconstructionOptions& options  = {},
 	const Progress&              progress = {});
 
-// How many vertices a mesh of a cloud of n points gets when nobody says: one per 16 points, so that
-// faces are about four point spacings wide, as dense as lines at their minimum spacing can be.
+// How many vertices a mesh of a cloud of n points gets when nobody says: one per 16 points, faces about
+// four point spacings wide; small clouds, which show little in so few, up to one per 4 points.
 Index automaticTargetVertices(Index n);
 
 } // namespace curvature_lines

@@ -5,40 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace curvature_lines {
 
 namespace {
 
-// The three rows of X share one 2 x 2 normal matrix.
-struct NormalEquations {
-	double uu = 0.0, uv = 0.0, vv = 0.0;
-	Eigen::Matrix<double, 2, 3> right = Eigen::Matrix<double, 2, 3>::Zero();
-};
+using Column = Eigen::Map<const Eigen::ArrayXd>;
 
-NormalEquations accumulate(const VariationSamples& s, const double* weights)
+Column column(const std::vector<double>& values)
 {
-	double uu = 0, uv = 0, vv = 0, b[6] = {0, 0, 0, 0, 0, 0};
-	for (std::size_t k = 0; k < s.pu.size(); ++k) {
-		const double w = weights[k] * s.geometric[k];
-		const double u = w * s.pu[k], v = w * s.pv[k];
-		uu += u * s.pu[k];
-		uv += u * s.pv[k];
-		vv += v * s.pv[k];
-		b[0] += u * s.nu[k];
-		b[1] += u * s.nv[k];
-		b[2] += u * s.nw[k];
-		b[3] += v * s.nu[k];
-		b[4] += v * s.nv[k];
-		b[5] += v * s.nw[k];
-	}
-	NormalEquations equations;
-	equations.uu = uu;
-	equations.uv = uv;
-	equations.vv = vv;
-	equations.right << b[0], b[1], b[2], b[3], b[4], b[5];
-	return equations;
+	return Column(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 } // namespace
@@ -83,16 +60,28 @@ bool VariationSamples::spanPlane() const
 VariationModel weightedLeastSquares(
 	const VariationSamples& samples, const std::vector<double>& weights)
 {
-	const NormalEquations e     = accumulate(samples, weights.data());
-	const double          trace = e.uu + e.vv;
+	// The three rows of X share one 2 x 2 normal matrix.
+	const Column         pu = column(samples.pu), pv = column(samples.pv);
+	const Eigen::ArrayXd w  = column(weights) * column(samples.geometric);
+	const Eigen::ArrayXd u = w * pu, v = w * pv;
+	double               uu = (u * pu).sum(), vv = (v * pv).sum();
+	const double         uv    = (u * pv).sum();
+	const double         trace = uu + vv;
 	if (!(trace > 0.0))
 		return VariationModel::Zero();
-	const double    ridge = 1e-12 * trace;
-	const double    uu = e.uu + ridge, vv = e.vv + ridge;
-	Eigen::Matrix2d inverse;
-	inverse << vv, -e.uv, -e.uv, uu;
-	inverse /= uu * vv - e.uv * e.uv;
-	return (inverse * e.right).transpose();
+	uu += 1e-12 * trace;
+	vv += 1e-12 * trace;
+	const double   perDeterminant = 1.0 / (uu * vv - uv * uv);
+	VariationModel model;
+	const auto     solveRow = [&](int row, const Column& dn) {
+        const double bu = (u * dn).sum(), bv = (v * dn).sum();
+        model(row, 0)   = (vv * bu - uv * bv) * perDeterminant;
+        model(row, 1)   = (uu * bv - uv * bu) * perDeterminant;
+	};
+	solveRow(0, column(samples.nu));
+	solveRow(1, column(samples.nv));
+	solveRow(2, column(samples.nw));
+	return model;
 }
 
 void IrlsSolver::computeResiduals(const VariationSamples& s, const VariationModel& model)
@@ -108,18 +97,35 @@ void IrlsSolver::computeResiduals(const VariationSamples& s, const VariationMode
 	}
 }
 
-double IrlsSolver::scale(double factor, double quantile)
+// Residuals change little from one iteration to the next, so the quantile is first looked for around the
+// last one: a pass over all and a selection among few.
+double IrlsSolver::scale(const IrlsOptions& options)
 {
-	m_scratch         = m_squared;
-	const auto count  = static_cast<std::ptrdiff_t>(m_scratch.size());
+	const std::size_t count = m_squared.size();
+	const double      place = options.quantile * double(count - 1);
+	const auto        rank  = static_cast<std::size_t>(place);
+	std::size_t       below = 0, inside = 0;
+	m_scratch.resize(count);
+	const double low = m_lastQuantile * (1.0 / 1.5), high = m_lastQuantile * 1.5;
+	for (const double r : m_squared) {
+		below += r < low;
+		m_scratch[inside] = r;
+		inside += (r >= low) & (r < high);
+	}
+	if (rank < below || rank + 1 >= below + inside) {
+		m_scratch = m_squared;
+		below     = 0;
+		inside    = count;
+	}
+	const auto at  = m_scratch.begin() + (rank - below);
+	const auto end = m_scratch.begin() + inside;
+	std::nth_element(m_scratch.begin(), at, end);
+	m_lastQuantile = *at;
+	double value   = std::sqrt(*at);
 	// The mean of the two middle residuals when their number is even.
-	const double place = quantile * double(count - 1);
-	const auto   low   = m_scratch.begin() + static_cast<std::ptrdiff_t>(std::floor(place));
-	std::nth_element(m_scratch.begin(), low, m_scratch.end());
-	double value = std::sqrt(*low);
-	if (const double part = place - std::floor(place); part > 0.0)
-		value += part * (std::sqrt(*std::min_element(low + 1, m_scratch.end())) - value);
-	return std::max(factor * value, exactResidual);
+	if (const double part = place - double(rank); part > 0.0)
+		value += part * (std::sqrt(*std::min_element(at + 1, end)) - value);
+	return std::max(options.sigmaFactor * value, exactResidual);
 }
 
 void IrlsSolver::computeWeights(double sigma, const IrlsOptions& options)
@@ -143,6 +149,7 @@ const IrlsFit& IrlsSolver::fit(
 	m_fit.sigma      = exactResidual;
 	m_fit.iterations = 0;
 	m_fit.weights.clear();
+	m_lastQuantile = 0.0;
 	if (samples.size() == 0)
 		return m_fit;
 
@@ -150,7 +157,7 @@ const IrlsFit& IrlsSolver::fit(
 	while (moving && m_fit.iterations < options.maxIterations) {
 		// sigma comes from all samples every time and the cut is re-evaluated: a sample may return.
 		computeResiduals(samples, m_fit.model);
-		computeWeights(scale(options.sigmaFactor, options.quantile), options);
+		computeWeights(scale(options), options);
 		const VariationModel next   = weightedLeastSquares(samples, m_fit.weights);
 		const double         change = (next - m_fit.model).norm();
 		moving      = options.robust && change > std::max(options.tolerance * next.norm(), exactResidual);
@@ -158,7 +165,7 @@ const IrlsFit& IrlsSolver::fit(
 		++m_fit.iterations;
 	}
 	computeResiduals(samples, m_fit.model);
-	m_fit.sigma = scale(options.sigmaFactor, options.quantile);
+	m_fit.sigma = scale(options);
 	computeWeights(m_fit.sigma, options);
 	return m_fit;
 }

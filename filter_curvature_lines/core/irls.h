@@ -68,10 +68,11 @@ public:
 
 private:
 	void   computeResiduals(const VariationSamples& samples, const VariationModel& model);
-	double scale(double factor, double quantile);
+	double scale(const IrlsOptions& options);
 	void   computeWeights(double sigma, const IrlsOptions& options);
 
 	IrlsFit             m_fit;
+	double              m_lastQuantile = 0.0; // squared
 	std::vector<double> m_squared, m_scratch;
 };
 

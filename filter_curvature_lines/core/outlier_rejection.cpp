@@ -91,7 +91,7 @@ private:
 bool canVote(const CurvatureField& field, Index b)
 {
 	return field.status[b] != PointStatus::TooFewNeighbors &&
-		   field.weights.neighbors[b].size() >= minSupporters;
+		   field.status[b] != PointStatus::Isolated && field.weights.neighbors[b].size() >= minSupporters;
 }
 
 double heightNoise(const PointCloud& cloud, const CurvatureField& field, const Progress& progress)

@@ -15,7 +15,7 @@ namespace curvature_lines {
 namespace {
 
 constexpr Index  minPairs     = 5;
-constexpr Index  minRegion    = 12;
+constexpr Index  minRegion    = 20;
 constexpr double minSupport   = 0.25; // share of the near neighbours that supports a right normal (a corner: 1/3)
 constexpr double costRatio    = 0.85; // a better normal must lower the cost of the centre pairs to this share,
 constexpr double minConsent   = 0.2;  // unless fewer than this share of the region agree with n_i

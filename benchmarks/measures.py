@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import platform
+import subprocess
 import sys
 from collections import Counter, defaultdict
 from dataclasses import dataclass
@@ -145,13 +146,21 @@ def markdown_table(header: list[str], rows: list[list[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
+def commit() -> str:
+    described = subprocess.run(
+        ["git", "describe", "--always", "--dirty"], cwd=CHECKOUT, capture_output=True, text=True, check=False
+    )
+    return described.stdout.strip() or "unknown"
+
+
 def write_result(name: str, script: str, title: str, body: str) -> None:
     """A result file says which command, versions and machine it came from."""
     RESULTS.mkdir(exist_ok=True)
     text = (
         f"# {title}\n\n"
         f"Written by `.venv/bin/python benchmarks/{script}`; plugin {pymeshlab_curvature_lines.__version__}, "
-        f"PyMeshLab {version('pymeshlab')}, {os.environ.get('OMP_NUM_THREADS', os.cpu_count())} threads, "
+        f"commit {commit()}, "
+        f"PyMeshLab {version('pymeshlab')}, {os.environ.get('OMP_NUM_THREADS', os.cpu_count())} threads (OpenMP), "
         f"{platform.machine()}.\n\n"
         f"{body}"
     )

@@ -126,7 +126,7 @@ void DirectionEnergy::buildCoupling(
 {
 	const Index                     n = cloud.size();
 	std::vector<std::vector<Index>> chosen(n);
-	parallelFor(n, progress.sub(0.0, 0.5, "Direction pairs"), [&](Index i) {
+	parallelFor(n, progress.sub(0.0, 0.5, "Pairing directions"), [&](Index i) {
 		chosen[i] = partnersOf(cloud, field.weights, i);
 	});
 	const NeighborLists pattern = symmetrized(NeighborLists::fromRows(chosen));
@@ -135,7 +135,7 @@ void DirectionEnergy::buildCoupling(
 	std::copy(pattern.offsets.begin(), pattern.offsets.end(), m_coupling.outerIndexPtr());
 	std::copy(pattern.indices.begin(), pattern.indices.end(), m_coupling.innerIndexPtr());
 	m_totalWeight.resize(n);
-	parallelFor(n, progress.sub(0.5, 1.0, "Direction pairs"), [&](Index i) {
+	parallelFor(n, progress.sub(0.5, 1.0, "Pairing directions"), [&](Index i) {
 		const auto         row    = pattern[i];
 		Complex*           values = m_coupling.valuePtr() + pattern.offsets[i];
 		const TangentFrame frame(cloud.normals.col(i));
@@ -211,7 +211,7 @@ DirectionSmoothingResult smoothDirections(
 	const Progress&                  progress)
 {
 	const Index           n = cloud.size();
-	const DirectionEnergy energy(cloud, field, options.alpha, progress.sub(0.0, 0.2, "Direction pairs"));
+	const DirectionEnergy energy(cloud, field, options.alpha, progress.sub(0.0, 0.2, "Pairing directions"));
 	const Objective       objective = std::cref(energy);
 	DirectionSmoothingResult result;
 	Eigen::VectorXd          gradient;

@@ -265,8 +265,8 @@ LineIntersections intersectLines(
 	const VoronoiCells& cells, const LineNetwork& lines, const Progress& progress)
 {
 	LineIntersections         result;
-	const std::vector<double> heights = stripHeights(cells, lines, progress.sub(0.0, 0.3, "strips"));
-	result.crossings = findCrossings(lines, heights, progress.sub(0.3, 0.9, "crossings"));
+	const std::vector<double> heights = stripHeights(cells, lines, progress.sub(0.0, 0.3, "Finding crossings"));
+	result.crossings = findCrossings(lines, heights, progress.sub(0.3, 0.9, "Finding crossings"));
 	const std::size_t  found = result.crossings.size();
 	std::vector<double> reach;
 	for (double height : heights)

@@ -392,7 +392,7 @@ LineNetwork Tracer::run(const Progress& progress)
 {
 	const std::vector<Index> seeds = seedsByConfidence();
 	for (std::size_t k = 0; k < seeds.size(); ++k) {
-		const Progress here = progress.sub(double(k) / seeds.size(), 1.0, "tracing lines of curvature");
+		const Progress here = progress.sub(double(k) / seeds.size(), 1.0, "Tracing lines");
 		if (k % ReportEvery == 0)
 			here.report(0.0);
 		for (m_family = 1; m_family <= 2; ++m_family)
@@ -433,7 +433,7 @@ LineNetwork traceLines(
 		const LineSpacing spacing = chooseLineSpacing(cloud, field, minimum, options, wanted);
 		Tracer      tracer(cloud, field, minimum, umbilics, cells, options, spacing);
 		LineNetwork network = tracer.run(
-			progress.sub(double(round) / rounds, double(round + 1) / rounds, "tracing lines of curvature"));
+			progress.sub(double(round) / rounds, double(round + 1) / rounds, "Tracing lines"));
 		if (options.targetVertices <= 0)
 			return network;
 		const double found = std::max<Index>(1, tracer.countCrossings());

@@ -285,7 +285,7 @@ MinimumNeighborhoods minimumNeighborhoods(
 	result.spacing.resize(n);
 	result.emptySlices.resize(n);
 	result.status.resize(n);
-	parallelFor(n, progress.sub(0.7, 1.0, "Minimum neighborhoods"), [&](Index i) {
+	parallelFor(n, progress.sub(0.7, 1.0, "Finding neighborhoods"), [&](Index i) {
 		const Index* row = rowOf(i);
 		thread_local std::vector<double> local;
 		local.clear();

@@ -240,7 +240,7 @@ QuadMeshResult buildQuadMesh(
 	const Progress&        progress)
 {
 	QuadMeshResult          result;
-	const LineIntersections found = intersectLines(cells, lines, progress.sub(0.0, 0.6, "crossings"));
+	const LineIntersections found = intersectLines(cells, lines, progress.sub(0.0, 0.6, "Finding crossings"));
 	result.crossings = static_cast<Index>(found.crossings.size());
 
 	const LineArrangement arrangement = arrangeLines(cells, lines, found);

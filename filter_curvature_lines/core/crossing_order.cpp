@@ -20,7 +20,8 @@ public:
 			double      length = 0.0;
 			for (Index k = 0; k < n; ++k) {
 				m_length[first + k] = length;
-				length += (lines.vertices.col(first + (k + 1) % n) - lines.vertices.col(first + k)).norm();
+				length += (lines.vertices.col(first + (k + 1) % n) - lines.vertices.col(first + k))
+							  .norm();
 			}
 			m_total.push_back(length);
 		}
@@ -46,7 +47,8 @@ private:
 	std::vector<double> m_total;  // all around
 };
 
-// An entry is 2 * crossing + slot: one line's passage through a crossing; entry ^ 1 is the other line's.
+// An entry is 2 * crossing + slot: one line's passage through a crossing; entry ^ 1 is the other
+// line's.
 class Passages {
 public:
 	Passages(
@@ -70,7 +72,8 @@ public:
 		return entry & 1 ? -m_crossings[entry >> 1].side : m_crossings[entry >> 1].side;
 	}
 
-	// The neighbour of an entry along its line in either direction, or -1 when there is none close by.
+	// The neighbour of an entry along its line in either direction, or -1 when there is none close
+	// by.
 	Index near(Index entry, bool forward) const
 	{
 		const std::vector<Index>& entries = m_along[line(entry)];
@@ -78,7 +81,8 @@ public:
 		if (n == 1 || ((k < 0 || k == n) && !isClosed(m_lines, line(entry))))
 			return -1;
 		const Index other = entries[(k + n) % n];
-		return forward ? (isShort(entry, other) ? other : -1) : (isShort(other, entry) ? other : -1);
+		return forward ? (isShort(entry, other) ? other : -1)
+					   : (isShort(other, entry) ? other : -1);
 	}
 
 private:
@@ -105,7 +109,8 @@ bool removeTouches(const Passages& passages, std::vector<LineCrossing>& crossing
 		const Index b = passages.near(a, true);
 		if (b < 0 || removed[a >> 1] || removed[b >> 1])
 			continue;
-		const bool digon = passages.near(a ^ 1, true) == (b ^ 1) || passages.near(a ^ 1, false) == (b ^ 1);
+		const bool digon =
+			passages.near(a ^ 1, true) == (b ^ 1) || passages.near(a ^ 1, false) == (b ^ 1);
 		if (digon && passages.side(a) != passages.side(b))
 			removed[a >> 1] = removed[b >> 1] = 1;
 	}
@@ -145,9 +150,9 @@ struct Triangle {
 bool findWrongOrder(const Passages& passages, const Triangle& t, Index exchange[2])
 {
 	const auto left = [&](Index entry, bool after) { return (passages.side(entry) > 0) == after; };
-	const bool l = left(t.onL[0], t.afterOnM) == left(t.onL[1], t.afterOnN);
-	const bool m = left(t.onM[0], true) == left(t.onM[1], !t.afterOnN);
-	const bool n = left(t.onN[0], false) == left(t.onN[1], !t.afterOnM);
+	const bool l    = left(t.onL[0], t.afterOnM) == left(t.onL[1], t.afterOnN);
+	const bool m    = left(t.onM[0], true) == left(t.onM[1], !t.afterOnN);
+	const bool n    = left(t.onN[0], false) == left(t.onN[1], !t.afterOnM);
 	if (l + m + n != 1)
 		return false;
 	const Index* wrong = l ? t.onL : m ? t.onM : t.onN;
@@ -160,17 +165,17 @@ Index reorderTriangles(const Passages& passages, std::vector<LineCrossing>& cros
 	std::vector<char> moved(crossings.size(), 0);
 	Index             exchanges = 0;
 	const auto        tryAt     = [&](const Triangle& t) {
-        const Index corners[] = {t.onL[0] >> 1, t.onL[1] >> 1, t.onM[1] >> 1};
-        Index       exchange[2];
-        if (moved[corners[0]] || moved[corners[1]] || moved[corners[2]] ||
-            !findWrongOrder(passages, t, exchange))
-            return;
-        std::swap(
-            crossings[exchange[0] >> 1].parameter[exchange[0] & 1],
-            crossings[exchange[1] >> 1].parameter[exchange[1] & 1]);
-        for (const Index c : corners)
-            moved[c] = 1;
-        ++exchanges;
+		const Index corners[] = {t.onL[0] >> 1, t.onL[1] >> 1, t.onM[1] >> 1};
+		Index       exchange[2];
+		if (moved[corners[0]] || moved[corners[1]] || moved[corners[2]] ||
+			!findWrongOrder(passages, t, exchange))
+			return;
+		std::swap(
+			crossings[exchange[0] >> 1].parameter[exchange[0] & 1],
+			crossings[exchange[1] >> 1].parameter[exchange[1] & 1]);
+		for (const Index c : corners)
+			moved[c] = 1;
+		++exchanges;
 	};
 	for (Index a = 0; a < passages.size(); ++a) {
 		const Index b = passages.near(a, true);
@@ -204,7 +209,9 @@ sortAlongLines(const LineNetwork& lines, const std::vector<LineCrossing>& crossi
 }
 
 Index makeConsistent(
-	const LineNetwork& lines, const std::vector<double>& reach, std::vector<LineCrossing>& crossings)
+	const LineNetwork&         lines,
+	const std::vector<double>& reach,
+	std::vector<LineCrossing>& crossings)
 {
 	const ArcLengths arcs(lines);
 	Index            exchanges = 0;

@@ -10,11 +10,12 @@ namespace curvature_lines {
 std::vector<std::vector<Index>>
 sortAlongLines(const LineNetwork& lines, const std::vector<LineCrossing>& crossings);
 
-// Corrections at crossings that are closer along their lines than reach[line vertex], repeated while they
-// find something. None changes V - E + F of lines that lie in a surface.
+// Corrections at crossings that are closer along their lines than reach[line vertex], repeated
+// while they find something. None changes V - E + F of lines that lie in a surface.
 // - A line that crosses itself at once only wavers: that crossing goes.
 // - Two lines that cross and cross back at once bound an empty digon: both crossings go.
-// - Three lines that cross pairwise bound a triangle. Each line sees the opposite corner on one side, by
+// - Three lines that cross pairwise bound a triangle. Each line sees the opposite corner on one
+// side, by
 //   either of the two others; where just two lines see it on different sides, the third has its two
 //   crossings in the wrong order, and they are exchanged.
 // Returns the number of exchanges.

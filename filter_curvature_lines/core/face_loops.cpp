@@ -15,10 +15,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double Pi = 3.14159265358979323846;
-// A sample inside a loop is covered when there is a point of the cloud within so many spacings of it, of the
-// point below or above it, or aside in the tangent plane: samples lie on chords, and a face may be the tip of
-// a finger. Only points that look the same way count, so the wall at the end of a tube does not.
-constexpr double CoverDistance = 2.5;
+// A sample inside a loop is covered when there is a point of the cloud within so many spacings of
+// it, of the point below or above it, or aside in the tangent plane: samples lie on chords, and a
+// face may be the tip of a finger. Only points that look the same way count, so the wall at the end
+// of a tube does not.
+constexpr double CoverDistance = 2.0;
 constexpr double SameWay       = 0.5;
 
 // Signed angle from a to b about n, in (-pi, pi].
@@ -33,13 +34,14 @@ double cornerAngle(const HalfEdgeGraph& graph, Index in, Index out)
 	const Index back = HalfEdgeGraph::twin(in);
 	if (back == out)
 		return 2.0 * Pi;
-	const double angle =
-		signedAngle(graph.tangent(out), graph.tangent(back), graph.normals().col(graph.origin(out)));
+	const double angle = signedAngle(
+		graph.tangent(out), graph.tangent(back), graph.normals().col(graph.origin(out)));
 	return angle < 0.0 ? angle + 2.0 * Pi : angle;
 }
 
-// How far an edge turns to the left between its two end tangents. By way of its middle, because a long edge
-// may turn more than half a turn; but a short one may lie the wrong way round for its tangents.
+// How far an edge turns to the left between its two end tangents. By way of its middle, because a
+// long edge may turn more than half a turn; but a short one may lie the wrong way round for its
+// tangents.
 double bend(const HalfEdgeGraph& graph, Index h)
 {
 	const Index    back = HalfEdgeGraph::twin(h), from = graph.origin(h), to = graph.origin(back);
@@ -89,7 +91,7 @@ bool LoopClassifier::isCovered(const std::vector<Index>& loop) const
 	Vector3d     center = Vector3d::Zero(), normal = Vector3d::Zero();
 	for (Index h : loop)
 		center += m_graph.positions().col(m_graph.origin(h)) / n;
-	double   size        = 0.0;
+	double   size       = 0.0;
 	Vector3d meanOfEnds = Vector3d::Zero();
 	for (Index h : loop) {
 		meanOfEnds += m_graph.normals().col(m_graph.origin(h)) / n;
@@ -104,7 +106,7 @@ bool LoopClassifier::isCovered(const std::vector<Index>& loop) const
 	Index site = 0, samples = 0, covered = 0;
 	for (Index h : loop) {
 		const Vector3d corner = m_graph.positions().col(m_graph.origin(h));
-		for (const double inward : {0.4, 0.7, 0.9}) {
+		for (const double inward : {0.5, 0.75, 0.95}) {
 			const Vector3d sample = corner + inward * (center - corner);
 			++samples;
 			covered += isPointAbove(sample, normal, size, site);
@@ -122,7 +124,7 @@ bool LoopClassifier::isPointAbove(
 		site                  = m_cells.locate(point, site);
 		const Vector3d n      = m_cloud.normals.col(site);
 		Vector3d       offset = m_cells.site(site) - point;
-		if (n.dot(normal) > SameWay)
+		if (height == 0.0 && n.dot(normal) > SameWay)
 			offset -= offset.dot(n) * n;
 		return n.dot(normal) > 0.0 && offset.norm() < CoverDistance * siteSpacing(m_cells, site);
 	};

@@ -1,6 +1,5 @@
-// Which loops of an embedded graph bound a face, and which run around a hole or along a rim (A09 section 6
-// makes every loop a face).
-// SPDX-License-Identifier: GPL-3.0-or-later
+// Which loops of an embedded graph bound a face, and which run around a hole or along a rim (A09
+// section 6 makes every loop a face). SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include "half_edge_mesh.h"
@@ -15,8 +14,8 @@ enum class LoopKind {
 	Tangled, // turns more than twice: bounds no disk, a crossing is missing
 };
 
-// Total turning of a loop in its tangent planes, as a multiple of 2 pi, of exterior corners and bends
-// along the edges. Gauss-Bonnet: 1 for a disk, less its share of the Gaussian curvature.
+// Total turning of a loop in its tangent planes, as a multiple of 2 pi, of exterior corners and
+// bends along the edges. Gauss-Bonnet: 1 for a disk, less its share of the Gaussian curvature.
 double turningNumber(const HalfEdgeGraph& graph, const std::vector<Index>& loop);
 
 class LoopClassifier {
@@ -27,7 +26,10 @@ public:
 private:
 	bool isCovered(const std::vector<Index>& loop) const;
 	bool isPointAbove(
-		const Eigen::Vector3d& sample, const Eigen::Vector3d& normal, double size, Index& site) const;
+		const Eigen::Vector3d& sample,
+		const Eigen::Vector3d& normal,
+		double                 size,
+		Index&                 site) const;
 
 	const PointCloud&    m_cloud;
 	const VoronoiCells&  m_cells;

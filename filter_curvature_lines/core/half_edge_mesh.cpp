@@ -15,8 +15,8 @@ namespace curvature_lines {
 
 namespace {
 
-// Edges that meet at more than 155 degrees continue each other. Others form the corner of a face, where
-// two lines end together: along a rim, that is where the quads are.
+// Edges that meet at more than 155 degrees continue each other. Others form the corner of a face,
+// where two lines end together: along a rim, that is where the quads are.
 constexpr double StraightCosine = -0.9;
 
 class DisjointSets {
@@ -72,7 +72,7 @@ std::vector<Index> nextCorners(const NeighborLists& faces)
 MeshTopology topologyOf(const PolygonMesh& mesh)
 {
 	MeshTopology result;
-	result.faces = mesh.faceCount();
+	result.faces                       = mesh.faceCount();
 	const std::vector<Index>& vertexOf = mesh.faces.indices;
 	const Index               corners  = static_cast<Index>(vertexOf.size());
 	const std::vector<Index>  next     = nextCorners(mesh.faces);
@@ -91,8 +91,8 @@ MeshTopology topologyOf(const PolygonMesh& mesh)
 	}
 
 	// Corners of a vertex that share a side belong to one fan; a rim is followed from fan to fan.
-	DisjointSets          fans(corners);
-	std::vector<FaceSide> rim;
+	DisjointSets                fans(corners);
+	std::vector<FaceSide>       rim;
 	const std::vector<FaceSide> sides = sortedSides(mesh);
 	for (std::size_t i = 0, j; i < sides.size(); i = j) {
 		for (j = i + 1; j < sides.size() && sides[j].sameEdge(sides[i]); ++j) {
@@ -104,8 +104,9 @@ MeshTopology topologyOf(const PolygonMesh& mesh)
 			}
 		}
 		++result.edges;
-		const bool loop     = sides[i].low == sides[i].high;
-		const bool manifold = j - i == 1 || (j - i == 2 && sides[i].forward != sides[i + 1].forward);
+		const bool loop = sides[i].low == sides[i].high;
+		const bool manifold =
+			j - i == 1 || (j - i == 2 && sides[i].forward != sides[i + 1].forward);
 		if (loop || !manifold) {
 			++result.nonmanifoldEdges;
 			tangled[sides[i].low] = tangled[sides[i].high] = 1;
@@ -143,18 +144,17 @@ MeshTopology topologyOf(const PolygonMesh& mesh)
 
 HalfEdgeGraph::HalfEdgeGraph(
 	Eigen::Matrix3Xd positions, Eigen::Matrix3Xd normals, std::vector<Edge> edges) :
-		m_positions(std::move(positions)),
-		m_normals(std::move(normals)),
-		m_edges(std::move(edges)),
-		m_alive(m_edges.size(), 1),
-		m_around(m_positions.cols())
+		m_positions(std::move(positions)), m_normals(std::move(normals)), m_edges(std::move(edges)),
+		m_alive(m_edges.size(), 1), m_around(m_positions.cols())
 {
 	for (Index h = 0; h < 2 * edgeCount(); ++h)
 		m_around[origin(h)].push_back(h);
 	for (Index v = 0; v < vertexCount(); ++v) {
 		const Eigen::Vector3d n = m_normals.col(v);
 		const Eigen::Vector3d x = n.unitOrthogonal(), y = n.cross(x);
-		const auto angle = [&](Index h) { return std::atan2(tangent(h).dot(y), tangent(h).dot(x)); };
+		const auto            angle = [&](Index h) {
+			return std::atan2(tangent(h).dot(y), tangent(h).dot(x));
+		};
 		std::vector<std::pair<double, Index>> order;
 		for (Index h : m_around[v])
 			order.emplace_back(angle(h), h);
@@ -201,12 +201,12 @@ bool HalfEdgeGraph::dissolveDegreeTwo()
 			continue;
 		// The first edge grows over the second; its half-edge that left v now leaves the far end.
 		const Index grown = m_around[v][0], merged = m_around[v][1];
-		const Index end   = origin(twin(merged));
-		Edge&       edge  = m_edges[grown >> 1];
+		const Index end                                 = origin(twin(merged));
+		Edge&       edge                                = m_edges[grown >> 1];
 		(grown & 1 ? edge.to : edge.from)               = end;
 		(grown & 1 ? edge.tangentTo : edge.tangentFrom) = tangent(twin(merged));
-		edge.middle       = m_positions.col(v);
-		edge.middleNormal = m_normals.col(v);
+		edge.middle                                     = m_positions.col(v);
+		edge.middleNormal                               = m_normals.col(v);
 		std::replace(m_around[end].begin(), m_around[end].end(), twin(merged), grown);
 		m_alive[merged >> 1] = 0;
 		m_around[v].clear();
@@ -215,8 +215,8 @@ bool HalfEdgeGraph::dissolveDegreeTwo()
 	return changed;
 }
 
-// Two lines that run together make slivers; two arcs far apart, as between the poles of a coarse sphere,
-// bound a face of their own.
+// Two lines that run together make slivers; two arcs far apart, as between the poles of a coarse
+// sphere, bound a face of their own.
 bool HalfEdgeGraph::isThin(Index edgeA, Index edgeB) const
 {
 	const Edge&  a     = m_edges[edgeA];
@@ -230,7 +230,8 @@ bool HalfEdgeGraph::removeThinDigons()
 {
 	bool changed = false;
 	for (const std::vector<Index>& loop : faceLoops()) {
-		const bool live = std::all_of(loop.begin(), loop.end(), [&](Index h) { return alive(h >> 1); });
+		const bool live =
+			std::all_of(loop.begin(), loop.end(), [&](Index h) { return alive(h >> 1); });
 		if (!live)
 			continue;
 		const bool digon = loop.size() == 2 && loop[0] >> 1 != loop[1] >> 1;
@@ -264,20 +265,20 @@ Index HalfEdgeGraph::addVertex(const Eigen::Vector3d& position, const Eigen::Vec
 
 void HalfEdgeGraph::splitEdge(Index edge)
 {
-	const Edge  whole  = m_edges[edge];
-	const Index v      = addVertex(whole.middle, whole.middleNormal);
-	const Index second = edgeCount();
-	const Eigen::Vector3d back = m_positions.col(whole.from) - whole.middle;
-	const Eigen::Vector3d on   = m_positions.col(whole.to) - whole.middle;
+	const Edge            whole  = m_edges[edge];
+	const Index           v      = addVertex(whole.middle, whole.middleNormal);
+	const Index           second = edgeCount();
+	const Eigen::Vector3d back   = m_positions.col(whole.from) - whole.middle;
+	const Eigen::Vector3d on     = m_positions.col(whole.to) - whole.middle;
 
 	Edge first = whole, rest = whole;
-	first.to           = v;
-	first.tangentTo    = back;
-	first.middle       = whole.middle + 0.5 * back;
-	rest.from          = v;
-	rest.tangentFrom   = on;
-	rest.middle        = whole.middle + 0.5 * on;
-	m_edges[edge]      = first;
+	first.to         = v;
+	first.tangentTo  = back;
+	first.middle     = whole.middle + 0.5 * back;
+	rest.from        = v;
+	rest.tangentFrom = on;
+	rest.middle      = whole.middle + 0.5 * on;
+	m_edges[edge]    = first;
 	m_edges.push_back(rest);
 	m_alive.push_back(1);
 	std::vector<Index>& far = m_around[whole.to];
@@ -290,12 +291,13 @@ void HalfEdgeGraph::separateParallelEdges()
 	std::vector<std::array<Index, 3>> byEnds;
 	for (Index e = 0; e < edgeCount(); ++e)
 		if (alive(e))
-			byEnds.push_back({std::min(edge(e).from, edge(e).to), std::max(edge(e).from, edge(e).to), e});
+			byEnds.push_back(
+				{std::min(edge(e).from, edge(e).to), std::max(edge(e).from, edge(e).to), e});
 	std::sort(byEnds.begin(), byEnds.end());
 	for (std::size_t i = 0; i < byEnds.size(); ++i) {
 		const auto [low, high, e] = byEnds[i];
-		const bool loop     = low == high;
-		const bool parallel = i > 0 && byEnds[i - 1][0] == low && byEnds[i - 1][1] == high;
+		const bool loop           = low == high;
+		const bool parallel       = i > 0 && byEnds[i - 1][0] == low && byEnds[i - 1][1] == high;
 		if (loop || parallel)
 			splitEdge(e);
 		if (loop)

@@ -18,8 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Spacings of the cloud below which crossings that follow each other on a line are one vertex: at once, and
-// in loops that turn twice, where the distance doubles until it helps.
+// Spacings of the cloud below which crossings that follow each other on a line are one vertex: at
+// once, and in loops that turn twice, where the distance doubles until it helps.
 constexpr double SamePlace     = 1e-3;
 constexpr double FirstRepair   = 0.06;
 constexpr double LargestRepair = 1.0;
@@ -36,10 +36,13 @@ public:
 			m_spacing.push_back(siteSpacing(cells, site));
 		}
 		for (const std::vector<Index>& entries : found.alongLine)
-			for (std::size_t k = 1; k < entries.size(); ++k)
-			{
+			for (std::size_t k = 1; k < entries.size(); ++k) {
 				const Index a = entries[k - 1] >> 1, b = entries[k] >> 1;
-				joinIfNear(a, b, (found.crossings[a].position - found.crossings[b].position).norm(), SamePlace);
+				joinIfNear(
+					a,
+					b,
+					(found.crossings[a].position - found.crossings[b].position).norm(),
+					SamePlace);
 			}
 	}
 
@@ -50,9 +53,10 @@ public:
 		for (Index line = 0; line < m_lines.lines(); ++line) {
 			const std::vector<Index>& entries = m_found.alongLine[line];
 			for (std::size_t k = 1; k < entries.size(); ++k)
-				addPiece(line, entries[k - 1], entries[k], pieces);
+				addPiece(line, entries[k - 1], entries[k], 0.0, pieces);
 			if (isClosed(m_lines, line) && !entries.empty())
-				addPiece(line, entries.back(), entries.front(), pieces);
+				addPiece(
+					line, entries.back(), entries.front(), segmentCount(m_lines, line), pieces);
 		}
 		std::vector<double> reach(m_first.size(), std::numeric_limits<double>::max());
 		for (const Piece& p : pieces)
@@ -81,13 +85,16 @@ public:
 			for (Index h : loop) {
 				const Index  v = graph.origin(h), w = graph.origin(HalfEdgeGraph::twin(h));
 				const double apart = (m_positions.col(v) - m_positions.col(w)).norm();
-				joined = joinIfNear(m_first[v], m_first[w], apart, distance) || joined;
+				joined             = joinIfNear(m_first[v], m_first[w], apart, distance) || joined;
 			}
 		}
 		return joined;
 	}
 
-	Index merged() const { return static_cast<Index>(m_cluster.size()) - static_cast<Index>(m_first.size()); }
+	Index merged() const
+	{
+		return static_cast<Index>(m_cluster.size()) - static_cast<Index>(m_first.size());
+	}
 
 private:
 	Index clusterOf(Index crossing) const
@@ -134,7 +141,7 @@ private:
 		m_radius.assign(vertices, 0.0);
 		for (Index c = 0; c < crossings; ++c) {
 			double& radius = m_radius[m_vertexOf[c]];
-			radius = std::max(
+			radius         = std::max(
 				radius, (m_found.crossings[c].position - m_positions.col(m_vertexOf[c])).norm());
 		}
 	}
@@ -153,26 +160,28 @@ private:
 
 	// A piece of line between two crossings.
 	struct Piece {
-		Index    from, to; // vertices
-		Index    line, entryFrom, entryTo;
-		double   half, wrap; // parameter half-way; what it exceeds the end's by where it runs over the end
+		Index  from, to; // vertices
+		Index  line, entryFrom, entryTo;
+		double half,
+			wrap; // parameter half-way; what it exceeds the end's by where it runs over the end
 		Vector3d middle;
 	};
 
-	void addPiece(Index line, Index from, Index to, std::vector<Piece>& pieces) const
+	void addPiece(Index line, Index from, Index to, double wrap, std::vector<Piece>& pieces) const
 	{
 		const Index    v = m_vertexOf[from >> 1], w = m_vertexOf[to >> 1];
-		const double   start  = parameterOf(from), end = parameterOf(to);
-		const double   wrap   = end > start ? 0.0 : segmentCount(m_lines, line);
+		const double   start = parameterOf(from), end = parameterOf(to);
 		const double   half   = 0.5 * (start + end + wrap);
 		const Vector3d middle = pointAt(line, half);
-		const bool inside = v == w && (middle - m_positions.col(v)).norm() < 2.0 * m_radius[v];
+		const double   extent = 2.0 * m_radius[v] + SamePlace * m_spacing[m_first[v]];
+		const bool     inside = v == w && (middle - m_positions.col(v)).norm() < extent;
 		if (!inside)
 			pieces.push_back({v, w, line, from, to, half, wrap, middle});
 	}
 
-	// Direction in which a line leaves the vertex of a crossing towards parameter `half`. From a cluster it
-	// is where the line leaves a disk common to all its lines: that is their cyclic order.
+	// Direction in which a line leaves the vertex of a crossing towards parameter `half`. From a
+	// cluster it is where the line leaves a disk common to all its lines: that is their cyclic
+	// order.
 	Vector3d
 	tangentAt(Index v, double reach, Index line, Index entry, double half, double sense) const
 	{
@@ -183,7 +192,8 @@ private:
 		double         t      = parameterOf(entry);
 		Vector3d       leg;
 		do {
-			t = sense > 0.0 ? std::min(std::floor(t) + 1.0, half) : std::max(std::ceil(t) - 1.0, half);
+			t   = sense > 0.0 ? std::min(std::floor(t) + 1.0, half)
+							  : std::max(std::ceil(t) - 1.0, half);
 			leg = pointAt(line, t < 0.0 ? t + n : t) - center;
 		} while (t != half && leg.norm() < reach);
 		return leg;

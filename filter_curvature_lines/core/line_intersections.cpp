@@ -22,11 +22,11 @@ using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point  = Kernel::Point_3;
 
-// Half the height of a strip, in spacings of the cloud: lines on the same surface differ in height by
-// the error of their projection, a fraction of the spacing.
+// Half the height of a strip, in spacings of the cloud: lines on the same surface differ in height
+// by the error of their projection, a fraction of the spacing.
 constexpr double StripHeight = 1.5;
 // Two lines that cross and cross back within this many strip heights only touch.
-constexpr double TouchLength = 4.0;
+constexpr double TouchLength      = 4.0;
 constexpr Index  SpacingNeighbors = 6;
 
 struct Segment {
@@ -51,8 +51,8 @@ stripHeights(const VoronoiCells& cells, const LineNetwork& lines, const Progress
 		for (Index v = lines.offsets[line]; v < lines.offsets[line + 1]; ++v) {
 			const Index next = cells.locate(lines.vertices.col(v), cell);
 			const bool  same = next == cell && v > lines.offsets[line];
-			heights[v] = same ? heights[v - 1] : StripHeight * siteSpacing(cells, next);
-			cell       = next;
+			heights[v]       = same ? heights[v - 1] : StripHeight * siteSpacing(cells, next);
+			cell             = next;
 		}
 	});
 	return heights;
@@ -74,8 +74,8 @@ public:
 
 	CGAL::Bbox_3 boundingBox(const Segment& s) const
 	{
-		return m_rims[2 * s.from].bbox() + m_rims[2 * s.from + 1].bbox() +
-			   m_rims[2 * s.to].bbox() + m_rims[2 * s.to + 1].bbox();
+		return m_rims[2 * s.from].bbox() + m_rims[2 * s.from + 1].bbox() + m_rims[2 * s.to].bbox() +
+			   m_rims[2 * s.to + 1].bbox();
 	}
 
 	// Appends where segment b passes through the strip of segment a.
@@ -83,7 +83,7 @@ public:
 	{
 		// Corners by the rims' numbering; both triangles face to the right of a.
 		const Index low0 = 2 * a.from, low1 = 2 * a.to, high0 = low0 + 1, high1 = low1 + 1;
-		for (const auto& triangle : {Corners {low0, low1, high1}, Corners {low0, high1, high0}}) {
+		for (const auto& triangle : {Corners{low0, low1, high1}, Corners{low0, high1, high0}}) {
 			if (const int side = passes(triangle, b)) {
 				const LineCrossing crossing = place(a, b, triangle, side);
 				if (sameSheet(a, b, crossing))
@@ -101,8 +101,8 @@ private:
 		return {m_rims[corner].x(), m_rims[corner].y(), m_rims[corner].z()};
 	}
 
-	// Zero counts as positive everywhere, as if the points were shifted by an infinitesimal amount, so
-	// that a line through a joint passes through exactly one of the two triangles that share it.
+	// Zero counts as positive everywhere, as if the points were shifted by an infinitesimal amount,
+	// so that a line through a joint passes through exactly one of the two triangles that share it.
 	static bool positive(const Point& p, const Point& q, const Point& r, const Point& s)
 	{
 		return CGAL::orientation(p, q, r, s) != CGAL::NEGATIVE;
@@ -116,7 +116,7 @@ private:
 	{
 		const bool ordered = c0 < c1;
 		const bool turn    = positive(
-            m_points[b.from], m_points[b.to], m_rims[ordered ? c0 : c1], m_rims[ordered ? c1 : c0]);
+			m_points[b.from], m_points[b.to], m_rims[ordered ? c0 : c1], m_rims[ordered ? c1 : c0]);
 		return turn == ordered;
 	}
 
@@ -158,7 +158,8 @@ private:
 		crossing.tangent[0]   = (p1 - p0).normalized();
 		crossing.tangent[1]   = (q1 - q0).normalized();
 		crossing.side         = side;
-		// The tangents sort the edges around the vertex: they have to tell the same side as the predicates.
+		// The tangents sort the edges around the vertex: they have to tell the same side as the
+		// predicates.
 		const Vector3d left  = crossing.normal.cross(crossing.tangent[0]).normalized();
 		const double   aside = crossing.tangent[1].dot(left);
 		if (aside * side < 0.0)
@@ -206,18 +207,20 @@ std::vector<LineCrossing> findCrossings(
 
 	std::vector<LineCrossing> crossings;
 	std::size_t               tested = 0;
-	CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& boxA, const Box& boxB) {
-		const Segment &a = boxA.info(), &b = boxB.info();
-		if (++tested % (1 << 18) == 0)
-			progress.report(0.5);
-		if (adjoin(lines, a, b))
-			return;
-		// Of a pair of lines always the same one carries the strip: its crossings are then consistent.
-		if (std::tie(a.line, a.index) < std::tie(b.line, b.index))
-			strips.pierce(a, b, crossings);
-		else
-			strips.pierce(b, a, crossings);
-	});
+	CGAL::box_self_intersection_d(
+		boxes.begin(), boxes.end(), [&](const Box& boxA, const Box& boxB) {
+			const Segment &a = boxA.info(), &b = boxB.info();
+			if (++tested % (1 << 18) == 0)
+				progress.report(0.5);
+			if (adjoin(lines, a, b))
+				return;
+			// Of a pair of lines always the same one carries the strip: its crossings are then
+			// consistent.
+			if (std::tie(a.line, a.index) < std::tie(b.line, b.index))
+				strips.pierce(a, b, crossings);
+			else
+				strips.pierce(b, a, crossings);
+		});
 	std::sort(crossings.begin(), crossings.end(), [](const LineCrossing& a, const LineCrossing& b) {
 		return std::tie(a.line[0], a.line[1], a.parameter[0], a.parameter[1]) <
 			   std::tie(b.line[0], b.line[1], b.parameter[0], b.parameter[1]);
@@ -261,13 +264,14 @@ Eigen::Vector3d pointOnLine(const LineNetwork& lines, Index line, double paramet
 	return p + (parameter - k) * (lines.vertices.col(s.to) - p);
 }
 
-LineIntersections intersectLines(
-	const VoronoiCells& cells, const LineNetwork& lines, const Progress& progress)
+LineIntersections
+intersectLines(const VoronoiCells& cells, const LineNetwork& lines, const Progress& progress)
 {
 	LineIntersections         result;
-	const std::vector<double> heights = stripHeights(cells, lines, progress.sub(0.0, 0.3, "Finding crossings"));
+	const std::vector<double> heights =
+		stripHeights(cells, lines, progress.sub(0.0, 0.3, "Finding crossings"));
 	result.crossings = findCrossings(lines, heights, progress.sub(0.3, 0.9, "Finding crossings"));
-	const std::size_t  found = result.crossings.size();
+	const std::size_t   found = result.crossings.size();
 	std::vector<double> reach;
 	for (double height : heights)
 		reach.push_back(TouchLength * height);

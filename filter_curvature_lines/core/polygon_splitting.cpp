@@ -1,5 +1,5 @@
-// Polygons cut along diagonals that stay inside them, judged by their corners in the plane of the mean
-// normal: lines of curvature meet at 90 degrees and end on others at 180.
+// Polygons cut along diagonals that stay inside them, judged by their corners in the plane of the
+// mean normal: lines of curvature meet at 90 degrees and end on others at 180.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "polygon_splitting.h"
 
@@ -18,13 +18,20 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double Forbidden    = std::numeric_limits<double>::infinity();
-constexpr double Straight     = 180.0;
-constexpr double ReflexCorner = 185.0; // degrees; a line that ends on another makes 180, which is no flaw
-constexpr double LeastAngle   = 2.0;   // degrees between a diagonal and the sides at its ends
+constexpr double Forbidden = std::numeric_limits<double>::infinity();
+constexpr double Straight  = 180.0;
+constexpr double ReflexCorner =
+	185.0; // degrees; a line that ends on another makes 180, which is no flaw
+constexpr double LeastAngle = 2.0; // degrees between a diagonal and the sides at its ends
 
-double square(double x) { return x * x; }
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double square(double x)
+{
+	return x * x;
+}
+double cross(const Vector2d& a, const Vector2d& b)
+{
+	return a.x() * b.y() - a.y() * b.x();
+}
 
 // A face seen along its mean normal, counter-clockwise.
 class FlatPolygon {
@@ -35,7 +42,7 @@ public:
 		Vector3d n = Vector3d::Zero();
 		for (Index v : face)
 			n += normals[v];
-		n = n.squaredNorm() > 0.0 ? n.normalized() : Vector3d::UnitZ();
+		n                = n.squaredNorm() > 0.0 ? n.normalized() : Vector3d::UnitZ();
 		const Vector3d x = n.unitOrthogonal(), y = n.cross(x);
 		for (Index v : face)
 			m_points.emplace_back(vertices[v].dot(x), vertices[v].dot(y));
@@ -49,7 +56,8 @@ public:
 	double angle(Index a, Index b, Index c) const
 	{
 		const Vector2d u = m_points[c] - m_points[b], v = m_points[a] - m_points[b];
-		const double   degrees = std::atan2(cross(u, v), u.dot(v)) * Straight / 3.14159265358979323846;
+		const double   degrees =
+			std::atan2(cross(u, v), u.dot(v)) * Straight / 3.14159265358979323846;
 		return degrees < 0.0 ? degrees + 2.0 * Straight : degrees;
 	}
 	double corner(Index i) const { return angle(previous(i), i, next(i)); }
@@ -63,7 +71,7 @@ public:
 	double pieceError(Index i, Index j) const
 	{
 		const Index corners = (j - i + size()) % size() + 1;
-		double      sum     = flaw(angle(j, i, next(i)), corners) + flaw(angle(previous(j), j, i), corners);
+		double sum = flaw(angle(j, i, next(i)), corners) + flaw(angle(previous(j), j, i), corners);
 		for (Index k = next(i); k != j; k = next(k))
 			sum += flaw(corner(k), corners);
 		return sum / corners;
@@ -73,7 +81,10 @@ public:
 	double leastAngleAt(Index i, Index j) const
 	{
 		return std::min(
-			{angle(j, i, next(i)), angle(previous(i), i, j), angle(i, j, next(j)), angle(previous(j), j, i)});
+			{angle(j, i, next(i)),
+			 angle(previous(i), i, j),
+			 angle(i, j, next(j)),
+			 angle(previous(j), j, i)});
 	}
 
 private:
@@ -82,7 +93,8 @@ private:
 		const double right = square(degrees - 90.0);
 		if (corners == 3) // no quad: dearer than any quad of about right angles
 			return square(degrees - 60.0) + square(30.0);
-		return corners == 4 || degrees > ReflexCorner ? right : std::min(right, square(degrees - Straight));
+		return corners == 4 || degrees > ReflexCorner ? right
+													  : std::min(right, square(degrees - Straight));
 	}
 
 	bool pointsInside(Index i, Index j) const
@@ -98,9 +110,9 @@ private:
 			const Index l = next(k);
 			if (k == i || k == j || l == i || l == j)
 				continue;
-			const Vector2d e = m_points[l] - m_points[k];
-			const bool apart   = cross(d, m_points[k] - p) * cross(d, m_points[l] - p) > 0.0;
-			const bool outside = cross(e, p - m_points[k]) * cross(e, p + d - m_points[k]) > 0.0;
+			const Vector2d e     = m_points[l] - m_points[k];
+			const bool     apart = cross(d, m_points[k] - p) * cross(d, m_points[l] - p) > 0.0;
+			const bool outside   = cross(e, p - m_points[k]) * cross(e, p + d - m_points[k]) > 0.0;
 			if (!apart && !outside)
 				return true;
 		}
@@ -128,7 +140,8 @@ PolygonSplitter::PolygonSplitter(const PolygonMesh& mesh)
 
 std::uint64_t PolygonSplitter::key(Index a, Index b)
 {
-	return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+	return (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
+		   static_cast<std::uint32_t>(std::max(a, b));
 }
 
 template<class Error>
@@ -200,7 +213,8 @@ void PolygonSplitter::splitConcaveFaces()
 void PolygonSplitter::triangulate()
 {
 	cutWhileAny([](const FlatPolygon& flat, Index i, Index j) { return -flat.leastAngleAt(i, j); });
-	// What no diagonal can cut, as when each is an edge elsewhere, becomes a star about a new vertex.
+	// What no diagonal can cut, as when each is an edge elsewhere, becomes a star about a new
+	// vertex.
 	const std::size_t count = m_faces.size();
 	for (std::size_t f = 0; f < count; ++f) {
 		const Face face = m_faces[f];
@@ -243,7 +257,8 @@ void PolygonSplitter::pairWithPentagons()
 				continue;
 			const Index g        = found->second;
 			Face        pentagon = m_faces[g];
-			std::rotate(pentagon.begin(), std::find(pentagon.begin(), pentagon.end(), a), pentagon.end());
+			std::rotate(
+				pentagon.begin(), std::find(pentagon.begin(), pentagon.end(), a), pentagon.end());
 			// From a through the pentagon to b, then over the triangle's apex back to a.
 			Face hexagon = pentagon;
 			hexagon.push_back(apex);
@@ -252,7 +267,7 @@ void PolygonSplitter::pairWithPentagons()
 			const Cut best = bestCut(hexagon, [](const FlatPolygon& flat, Index i, Index j) {
 				return j - i == 3 ? flat.error(i, j) : Forbidden;
 			});
-			Face first, second;
+			Face      first, second;
 			if (!cut(hexagon, best, first, second))
 				continue;
 			m_edges.erase(key(a, b));

@@ -1,6 +1,6 @@
-// Polygons cut into better ones without moving a vertex: large faces into quads, triangle-pentagon pairs
-// into quads, concave faces into convex ones (R07), any face into triangles. Each keeps V - E + F.
-// SPDX-License-Identifier: GPL-3.0-or-later
+// Polygons cut into better ones without moving a vertex: large faces into quads, triangle-pentagon
+// pairs into quads, concave faces into convex ones (R07), any face into triangles. Each keeps V - E
+// + F. SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include <unordered_set>
@@ -14,9 +14,9 @@ class PolygonSplitter {
 public:
 	explicit PolygonSplitter(const PolygonMesh& mesh);
 
-	void cutLargeFaces();      // six corners and more: quads with right angles first
-	void pairWithPentagons();  // a triangle and a pentagon with a common edge: two quads
-	void splitConcaveFaces();  // faces that are no quads, at corners above 185 degrees
+	void cutLargeFaces();     // six corners and more: quads with right angles first
+	void pairWithPentagons(); // a triangle and a pentagon with a common edge: two quads
+	void splitConcaveFaces(); // faces that are no quads, at corners above 185 degrees
 	void triangulate();
 
 	PolygonMesh mesh() const;
@@ -28,10 +28,12 @@ private:
 		double error = 0.0;
 	};
 	// The cheapest cut among the corner pairs that `error` gives a finite cost.
-	template<class Error> Cut bestCut(const Face& face, const Error& error) const;
-	template<class Error> void cutWhileAny(const Error& error);
-	bool cut(const Face& face, const Cut& cut, Face& first, Face& second);
-	bool isEdge(Index a, Index b) const { return m_edges.count(key(a, b)) != 0; }
+	template<class Error>
+	Cut bestCut(const Face& face, const Error& error) const;
+	template<class Error>
+	void                 cutWhileAny(const Error& error);
+	bool                 cut(const Face& face, const Cut& cut, Face& first, Face& second);
+	bool                 isEdge(Index a, Index b) const { return m_edges.count(key(a, b)) != 0; }
 	static std::uint64_t key(Index a, Index b);
 
 	std::vector<Eigen::Vector3d>      m_vertices, m_normals;

@@ -1,6 +1,5 @@
-// From crossings to faces: the half-edge graph of the lines, its reduction, its loops, and polygons that
-// form a two-manifold (A09 section 6).
-// SPDX-License-Identifier: GPL-3.0-or-later
+// From crossings to faces: the half-edge graph of the lines, its reduction, its loops, and polygons
+// that form a two-manifold (A09 section 6). SPDX-License-Identifier: GPL-3.0-or-later
 #include "quad_mesh.h"
 
 #include <algorithm>
@@ -19,9 +18,9 @@ namespace {
 using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
-constexpr double SmallHole     = 12.0; // perimeter in median edges
-constexpr double CollarWidth   = 0.3;  // of the way to the centre
-constexpr Index  Crumb         = 4;    // faces
+constexpr double SmallHole   = 12.0; // perimeter in median edges
+constexpr double CollarWidth = 0.3;  // of the way to the centre
+constexpr Index  Crumb       = 4;    // faces
 
 // Polygons still in the numbering of the graph, with vertices added at the end.
 struct Polygons {
@@ -29,11 +28,12 @@ struct Polygons {
 	std::vector<Face>     faces;
 };
 
-// A disk whose border visits a vertex twice gets a ring of quads along its border, after which no face
-// does: V and F grow by its n corners (F by n for n - 1 + 1), E by 2 n.
+// A disk whose border visits a vertex twice gets a ring of quads along its border, after which no
+// face does: V and F grow by its n corners (F by n for n - 1 + 1), E by 2 n.
 void addCollared(const Face& border, Polygons& polygons)
 {
-	const Index n = static_cast<Index>(border.size()), first = static_cast<Index>(polygons.vertices.size());
+	const Index n      = static_cast<Index>(border.size()),
+				first  = static_cast<Index>(polygons.vertices.size());
 	Vector3d    center = Vector3d::Zero();
 	for (Index v : border)
 		center += polygons.vertices[v] / n;
@@ -93,8 +93,8 @@ bool isInside(const Vector3d& point, const Face& face, const Polygons& polygons)
 	const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
 	bool           inside = false;
 	for (std::size_t k = 0; k < face.size(); ++k) {
-		const Vector3d a = polygons.vertices[face[k]] - point;
-		const Vector3d b = polygons.vertices[face[(k + 1) % face.size()]] - point;
+		const Vector3d a  = polygons.vertices[face[k]] - point;
+		const Vector3d b  = polygons.vertices[face[(k + 1) % face.size()]] - point;
 		const double   ay = a.dot(y), by = b.dot(y);
 		if ((ay > 0.0) != (by > 0.0) && a.dot(x) + (b - a).dot(x) * ay / (ay - by) > 0.0)
 			inside = !inside;
@@ -126,13 +126,14 @@ Index removeIslands(Polygons& polygons)
 		const auto liesIn = [&](const Face& face) {
 			return size[root(face[0])] > size[c] && isInside(polygons.vertices[c], face, polygons);
 		};
-		island[c] = size[c] > 0 &&
-					((size[c] < Crumb && largest > 10 * Crumb) ||
-					 std::any_of(polygons.faces.begin(), polygons.faces.end(), liesIn));
+		island[c] =
+			size[c] > 0 && ((size[c] < Crumb && largest > 10 * Crumb) ||
+							std::any_of(polygons.faces.begin(), polygons.faces.end(), liesIn));
 	}
 	const auto onIsland = [&](const Face& face) { return island[root(face[0])] != 0; };
 	polygons.faces.erase(
-		std::remove_if(polygons.faces.begin(), polygons.faces.end(), onIsland), polygons.faces.end());
+		std::remove_if(polygons.faces.begin(), polygons.faces.end(), onIsland),
+		polygons.faces.end());
 	return static_cast<Index>(std::count(island.begin(), island.end(), 1));
 }
 
@@ -163,7 +164,7 @@ PolygonMesh separateFans(const Polygons& polygons)
 			if (fan[seed] >= 0)
 				continue;
 			std::vector<std::size_t> front = {seed};
-			fan[seed] = static_cast<Index>(source.size());
+			fan[seed]                      = static_cast<Index>(source.size());
 			source.push_back(corners[begin].vertex);
 			for (std::size_t k = 0; k < front.size(); ++k) {
 				const Corner& c = corners[begin + front[k]];
@@ -194,15 +195,16 @@ PolygonMesh separateFans(const Polygons& polygons)
 // Fills rims that are short against the mesh with one polygon each.
 void closeSmallHoles(PolygonMesh& mesh)
 {
-	std::vector<Index>                    ahead(mesh.vertexCount(), -1); // along the rim, hole on the left
-	std::vector<std::pair<Index, Index>>  sides;
-	std::vector<double>                   lengths;
+	std::vector<Index> ahead(mesh.vertexCount(), -1); // along the rim, hole on the left
+	std::vector<std::pair<Index, Index>> sides;
+	std::vector<double>                  lengths;
 	for (Index f = 0; f < mesh.faceCount(); ++f) {
 		const NeighborLists::Row face = mesh.faces[f];
 		for (Index k = 0; k < face.size(); ++k) {
 			sides.emplace_back(face[k], face[(k + 1) % face.size()]);
-			lengths.push_back((mesh.vertices.col(sides.back().first) -
-							   mesh.vertices.col(sides.back().second)).norm());
+			lengths.push_back(
+				(mesh.vertices.col(sides.back().first) - mesh.vertices.col(sides.back().second))
+					.norm());
 		}
 	}
 	if (sides.empty())
@@ -240,11 +242,12 @@ QuadMeshResult buildQuadMesh(
 	const Progress&        progress)
 {
 	QuadMeshResult          result;
-	const LineIntersections found = intersectLines(cells, lines, progress.sub(0.0, 0.6, "Finding crossings"));
+	const LineIntersections found =
+		intersectLines(cells, lines, progress.sub(0.0, 0.6, "Finding crossings"));
 	result.crossings = static_cast<Index>(found.crossings.size());
 
 	const LineArrangement arrangement = arrangeLines(cells, lines, found);
-	result.mergedCrossings = arrangement.merged;
+	result.mergedCrossings            = arrangement.merged;
 	progress.report(0.7);
 	const LoopClassifier kindOf(cloud, cells, arrangement.graph);
 	Polygons             polygons = facesOf(arrangement.graph, kindOf, result);

@@ -16,20 +16,22 @@ struct QuadMeshOptions {
 struct QuadMeshResult {
 	PolygonMesh  mesh;
 	MeshTopology topology;
-	Index crossings       = 0;
-	Index mergedCrossings = 0; // of these, joined to another where three lines pass too close together
-	Index discardedLoops  = 0; // around holes, along rims, and tangled ones
-	Index tangledLoops    = 0; // of these, that bound no disk: the mesh has a hole the cloud has not
-	Index islands         = 0; // components inside a face of another one, left out
+	Index        crossings = 0;
+	Index        mergedCrossings =
+		0; // of these, joined to another where three lines pass too close together
+	Index discardedLoops = 0; // around holes, along rims, and tangled ones
+	Index tangledLoops   = 0; // of these, that bound no disk: the mesh has a hole the cloud has not
+	Index islands        = 0; // components inside a face of another one, left out
 };
 
-// Two-manifold with boundary by construction: each half-edge bounds at most one face, no two edges join
-// the same vertices, no face visits a vertex twice, and vertices where several fans meet are split.
+// Two-manifold with boundary by construction: each half-edge bounds at most one face, no two edges
+// join the same vertices, no face visits a vertex twice, and vertices where several fans meet are
+// split.
 QuadMeshResult buildQuadMesh(
-	const PointCloud&        cloud,
-	const VoronoiCells&      cells,
-	const LineNetwork&       lines,
-	const QuadMeshOptions&   options  = {},
-	const Progress&          progress = {});
+	const PointCloud&      cloud,
+	const VoronoiCells&    cells,
+	const LineNetwork&     lines,
+	const QuadMeshOptions& options  = {},
+	const Progress&        progress = {});
 
 } // namespace curvature_lines

@@ -16,7 +16,10 @@ struct RobustCurvatureOptions {
 	double tolerance     = 1e-4; // stop when the tensor changes by less, relatively
 	double sigmaFactor   = 1.4826; // sigma = factor * median residual (A09 eq. after 1)
 	double cut           = 2.0;  // residuals above cut * sigma get weight 0
-	bool   featureGate   = true; // keep only points that agree with p_i itself before forming pairs
+	// Keep only points that agree with p_i itself before forming pairs. Finds out as well when n_i is the
+	// one that is wrong, and fits at the neighbours' normal instead; regions hold at least 20 points where
+	// twice the radius does. false: the published algorithm.
+	bool   featureGate   = true;
 	bool   robust        = true; // false: plain distance-weighted least squares (for comparison)
 	Index  maxPoints     = 120;  // cap of the operating region
 	Index  maxPairs      = 2000; // above, a deterministic subsample of the pairs
@@ -41,7 +44,7 @@ struct CurvatureField {
 	std::vector<PointStatus> status;
 	StatisticalWeights       weights;
 	// The affine model's normal at p_i: unit(sum_j W_j (n_j - X d_j)) (A09 end of section 3; R07).
-	// Kept beside the input normals; the caller decides whether to adopt it.
+	// Kept beside the input normals; the caller decides whether to adopt it. Turns round a wrong input normal.
 	Eigen::Matrix3Xd correctedNormals; // 3 x N unit
 	Index iterations = 0;              // largest number of IRLS iterations any point needed
 

@@ -10,7 +10,7 @@
 
 namespace curvature_lines {
 
-// M-estimates from the pairs (p_i, p_j) alone, from three starts: flat, the minimum neighbourhood, the region.
+// M-estimates from the pairs (p_i, p_j) alone, started flat, from the minimum neighbourhood, from the region.
 struct CentreFits {
 	std::array<VariationModel, 3> models;
 	std::array<double, 3>         sigmas = {0.0, 0.0, 0.0};

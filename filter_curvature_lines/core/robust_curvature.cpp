@@ -16,9 +16,11 @@ namespace {
 
 constexpr Index  minPairs     = 5;
 constexpr Index  minRegion    = 20;
-constexpr double minSupport   = 0.25; // share of the near neighbours that supports a right normal (a corner: 1/3)
-constexpr double costRatio    = 0.85; // a better normal must lower the cost of the centre pairs to this share,
-constexpr double minConsent   = 0.2;  // unless fewer than this share of the region agree with n_i
+// Shares: of the near neighbours that support a right normal (at a corner 1/3 do); of the cost of the
+// centre pairs that a better normal may leave, unless less than the third of the region agrees with n_i.
+constexpr double minSupport = 0.25;
+constexpr double costRatio  = 0.85;
+constexpr double minConsent = 0.2;
 constexpr double minAgreement = 0.2; // of the summed weight; below, the corrected normal is a coin toss
 
 struct Estimate {
@@ -227,7 +229,7 @@ void setPrincipalCurvatures(
 	field.k1[i] = finite ? eigen.eigenvalues()[1] : 0.0;
 	field.k2[i] = finite ? eigen.eigenvalues()[0] : 0.0;
 
-	// The directions are tangent at the normal the cloud carries, even where the model was fitted at a better one.
+	// Tangent at the normal the cloud carries, even where the model was fitted at a better one.
 	field.d1.col(i) =
 		tangential(TangentFrame(estimate.normal).toSpace(axis), TangentFrame(normal));
 	field.d2.col(i) = normal.cross(field.d1.col(i)).normalized();

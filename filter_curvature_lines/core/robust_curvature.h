@@ -44,7 +44,7 @@ struct CurvatureField {
 	std::vector<PointStatus> status;
 	StatisticalWeights       weights;
 	// The affine model's normal at p_i: unit(sum_j W_j (n_j - X d_j)) (A09 end of section 3; R07).
-	// Kept beside the input normals; the caller decides whether to adopt it. Turns round a wrong input normal.
+	// Kept beside the input normals; the caller decides whether to adopt it. Replaces wrong input normals.
 	Eigen::Matrix3Xd correctedNormals; // 3 x N unit
 	Index iterations = 0;              // largest number of IRLS iterations any point needed
 

@@ -136,12 +136,13 @@ def test_corrected_normals_are_better_and_directions_tangent_to_them(noisy_torus
 
 def test_region_scale_is_in_local_spacings(torus):
     radius = {}
-    for scale in (2.0, 4.0):
+    # Smaller regions would grow to hold enough points for a fit.
+    for scale in (3.0, 4.5):
         meshes = layer_of(torus)
         report = meshes.apply_filter(CURVATURE, region_scale=scale)
         radius[scale] = np.median(attribute(meshes, "curv_scale"))
         assert radius[scale] == pytest.approx(scale * report["median_spacing"], rel=0.2)
-    assert radius[4.0] == pytest.approx(2 * radius[2.0], rel=0.05)
+    assert radius[4.5] == pytest.approx(1.5 * radius[3.0], rel=0.05)
 
 
 def test_points_without_estimate_are_zero_and_counted(torus):

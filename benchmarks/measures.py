@@ -7,6 +7,7 @@ import os
 import platform
 import subprocess
 import sys
+import time
 from collections import Counter, defaultdict
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -15,6 +16,8 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 import pymeshlab_curvature_lines
+
+from peers.estimate import Estimate
 
 CHECKOUT = Path(__file__).resolve().parent.parent
 RESULTS = CHECKOUT / "benchmarks" / "results"
@@ -33,13 +36,35 @@ def layer(positions: np.ndarray, normals: np.ndarray) -> pymeshlab.MeshSet:
 
 def meshlab_sample(name: str, subdivisions: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Vertices and vertex normals of a mesh that comes with PyMeshLab, its faces forgotten."""
+    return oriented_vertices(MESHLAB_SAMPLES / name, subdivisions)
+
+
+def oriented_vertices(mesh: Path, subdivisions: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices in at least one face of a mesh file, and their normals."""
     meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(MESHLAB_SAMPLES / name))
+    meshes.load_new_mesh(str(mesh))
     meshes.meshing_remove_unreferenced_vertices()
     for _ in range(subdivisions):
         meshes.meshing_surface_subdivision_loop(iterations=1, threshold=pymeshlab.PercentageValue(0))
     meshes.compute_normal_per_vertex()
     return meshes.current_mesh().vertex_matrix(), meshes.current_mesh().vertex_normal_matrix()
+
+
+def robust_curvature(positions: np.ndarray, normals: np.ndarray, **parameters) -> Estimate:
+    """Our filter on a cloud; its normals are those of the layer afterwards."""
+    meshes = layer(positions, normals)
+    start = time.perf_counter()
+    meshes.compute_curvature_robust_per_vertex(**parameters)
+    seconds = time.perf_counter() - start
+    mesh = meshes.current_mesh()
+    return Estimate(
+        np.arange(len(positions)),
+        mesh.vertex_custom_scalar_attribute_array("curv_k1"),
+        mesh.vertex_custom_scalar_attribute_array("curv_k2"),
+        mesh.vertex_curvature_principal_dir1_matrix(),
+        mesh.vertex_normal_matrix(),
+        seconds / len(positions),
+    )
 
 
 def rms(values: np.ndarray) -> float:

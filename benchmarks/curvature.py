@@ -137,7 +137,7 @@ def k1_figures(cloud: Cloud, estimate: Estimate) -> Figures:
 def edge_figures(cloud: Cloud, estimate: Estimate) -> Figures:
     truth, chosen = part_of(cloud, cloud.parts[""], estimate)
     size = np.maximum(np.abs(estimate.k1[chosen]), np.abs(estimate.k2[chosen]))
-    figures = {f"|k|, {quantile:.0%} quantile": float(np.quantile(size, quantile)) for quantile in (0.5, 0.9, 0.99)}
+    figures = {f"abs k, {percent} % quantile": float(np.percentile(size, percent)) for percent in (50, 90, 99)}
     if estimate.normals is not None:
         cosines = np.einsum("ij,ij->i", estimate.normals[chosen], truth["normals"])
         figures["normals RMS, degrees"] = measures.rms(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))
@@ -288,7 +288,7 @@ def torus(settings: Settings) -> str:
         0.02: {"H": (0.082, 0.06)},
     }
     cases = [
-        Case(f"torus 20 000, {noise:.2%}", sampled("torus", 20000, noise), target, quick=noise == 0.005)
+        Case(f"torus 20 000, {100 * noise:g} %", sampled("torus", 20000, noise), target, quick=noise == 0.005)
         for noise, target in targets.items()
     ]
     return compare(cases, settings, figures_of)
@@ -367,7 +367,7 @@ def wrong_normals(points: int, share: float) -> Callable[[int], Cloud]:
 
 def random_normals(settings: Settings) -> str:
     cases = [
-        Case(f"{share:.0%} random normals", wrong_normals(2000, share), {"k1 RMS": (0.05, 0.03)}, quick=True)
+        Case(f"{100 * share:g} % random normals", wrong_normals(2000, share), {"k1 RMS": (0.05, 0.03)}, quick=True)
         for share in (0.15, 0.3)
     ]
     return (
@@ -399,8 +399,8 @@ def cube(settings: Settings) -> str:
     methods["ours"] = with_corrected_normals(methods["ours"], settings)
     return (
         "Points whose foot point is 0.5 to 1.5 spacings from an edge of a cube of side 1. Normals: those of the layer "
-        "after `correct_normals`, or of the jet, against the face of the foot point.\n\n"
-        + compare(cases, settings, edge_figures, methods)
+        "after `correct_normals`, or of the jet, against the face of the foot point. Abs k: the larger absolute principal "
+        "curvature.\n\n" + compare(cases, settings, edge_figures, methods)
     )
 
 
@@ -463,7 +463,7 @@ def memory_row(settings: Settings) -> str:
 def time_and_memory(settings: Settings) -> str:
     sizes, noises = ((20000,), (0.005,)) if settings.quick else ((20000, 200000), (0.005, 0.02))
     rows = [
-        time_row(f"torus {points}, {noise:.1%}", sampled("torus", points, noise)(1), settings)
+        time_row(f"torus {points}, {100 * noise:g} %", sampled("torus", points, noise)(1), settings)
         for points in sizes
         for noise in noises
     ]
@@ -472,7 +472,8 @@ def time_and_memory(settings: Settings) -> str:
         header += [f"jet ({degree}, {neighbors})" for degree, neighbors in JET_SETTINGS]
         header += [f"APSS {scale}" for scale in APSS_SCALES]
     return (
-        f"Wall clock per point (all threads: `processor`), seed 1, fastest of {TIMED_RUNS} runs, APSS of one. Peers as "
+        f"Wall clock per point (all threads: `processor`), seed 1, fastest of {TIMED_RUNS} runs, APSS of one; "
+        "where `processor` is well below the wall clock times the threads, the machine was busy with other work. Peers as "
         f"ratios to ours: above 1 they are slower. Jets (degree, k) at {JET_POINTS} of the points, search tree of all.\n\n"
         + measures.markdown_table(header, rows)
         + "\n"
@@ -499,7 +500,7 @@ def introduction(settings: Settings) -> str:
         f"{PLANE_FIT_NEIGHBORS} neighbours, their side the true one, unless said otherwise. Noise is a fraction of the "
         "surface's diagonal. Truth is that of the foot point of the noisy point. **H**: RMS of |H - true H| / |true H|, "
         "over the RMS curvature where H vanishes somewhere (helicoid). **Direction**: mean angle of d1 in radians where "
-        f"k1 - k2 exceeds {CLEAR_ANISOTROPY:.0%} of the RMS curvature. Inner: farther than {RIM_MARGIN} from the rim.\n"
+        f"k1 - k2 exceeds {100 * CLEAR_ANISOTROPY:g} % of the RMS curvature. Inner: farther than {RIM_MARGIN} from the rim.\n"
     )
     if settings.peers:
         text += (

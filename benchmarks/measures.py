@@ -52,18 +52,22 @@ def oriented_vertices(mesh: Path, subdivisions: int = 0) -> tuple[np.ndarray, np
 
 def robust_curvature(positions: np.ndarray, normals: np.ndarray, **parameters) -> Estimate:
     """Our filter on a cloud; its normals are those of the layer afterwards."""
-    meshes = layer(positions, normals)
+    return estimated(layer(positions, normals), **parameters)
+
+
+def estimated(meshes: pymeshlab.MeshSet, **parameters) -> Estimate:
+    """The same on the current layer, for those who want to see what else it carries afterwards."""
     start = time.perf_counter()
     meshes.compute_curvature_robust_per_vertex(**parameters)
     seconds = time.perf_counter() - start
     mesh = meshes.current_mesh()
     return Estimate(
-        np.arange(len(positions)),
+        np.arange(mesh.vertex_number()),
         mesh.vertex_custom_scalar_attribute_array("curv_k1"),
         mesh.vertex_custom_scalar_attribute_array("curv_k2"),
         mesh.vertex_curvature_principal_dir1_matrix(),
         mesh.vertex_normal_matrix(),
-        seconds / len(positions),
+        seconds / mesh.vertex_number(),
     )
 
 

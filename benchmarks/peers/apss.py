@@ -14,7 +14,6 @@ import numpy as np
 from peers.estimate import Estimate, tidy
 
 DEFAULT_SCALE = 2
-_TIMEOUT = 1800
 
 
 def apss(positions: np.ndarray, normals: np.ndarray, scale: float) -> Estimate | None:
@@ -27,7 +26,6 @@ def apss(positions: np.ndarray, normals: np.ndarray, scale: float) -> Estimate |
             cwd=Path(__file__).resolve().parent.parent,
             capture_output=True,
             check=False,
-            timeout=_TIMEOUT,
         )
         if done.returncode < 0:
             return None

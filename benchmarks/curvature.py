@@ -535,8 +535,13 @@ def main() -> None:
     if given.experiments or given.quick:
         print("\n".join(sections))
     else:
-        script = "curvature.py" + (" --data FOLDER" if given.data else "")
-        measures.write_result("curvature", script, "Curvature", "\n".join(sections))
+        options = {
+            " --data FOLDER": given.data,
+            f" --scale-mode {given.scale_mode}": given.scale_mode,
+            " --without-peers": given.without_peers,
+        }
+        command = "curvature.py" + "".join(option for option, used in options.items() if used)
+        measures.write_result("curvature", command, "Curvature", "\n".join(sections))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,83 @@
+// One local quadric over a tangent plane: the voter of the outlier rejection and the predictor of the
+// denoising (the osculating quadrics of A09 section 4, fitted to many points instead of few).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "local_polynomial.h"
+#include "neighborhoods.h"
+
+namespace curvature_lines {
+
+// z = phi(x, y) . a with phi = (1, x, y, x^2, x y, y^2); x and y in radii, z a length.
+struct SurfacePatch {
+	using Fit = PolynomialFit<2, 1>;
+	struct Local {
+		double x = 0.0, y = 0.0, z = 0.0;
+	};
+
+	using Quadric  = Eigen::Matrix<double, Fit::count, 1>;
+	using Leverage = Eigen::Matrix<double, monomialCount(4), 1>;
+
+	Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+	TangentFrame    frame{Eigen::Vector3d::UnitZ()};
+	double          radius               = 0.0;
+	Quadric         coefficients         = Quadric::Zero();
+	Leverage        leverageCoefficients = Leverage::Zero(); // stays so in a robust fit
+	double          scale                = 0.0;              // of the residuals, a length
+	double          effectiveCount       = 0.0;              // (sum W)^2 / sum W^2
+	bool            valid                = false;
+
+	SurfacePatch() = default;
+	SurfacePatch(const Eigen::Vector3d& origin, const Eigen::Vector3d& normal, double radius) :
+			origin(origin), frame(normal), radius(radius)
+	{
+	}
+
+	Local           toLocal(const Eigen::Vector3d& p) const;
+	Eigen::Vector2d gradient(double x, double y) const;
+	Eigen::Vector3d normal(double x, double y) const;
+	// Signed distance from the surface along its normal, to first order.
+	double residual(const Local& p) const;
+	// phi^T A^-1 phi with A = sum W phi phi^T: the variance of the prediction, over that of one sample.
+	double leverage(double x, double y) const;
+	// Turns the frame to the fitted normal at the origin; the quadric has to be fitted again.
+	void tilt();
+};
+
+// W(x, y): 0 outside of the unit disk, where a quadric is not asked. Of tangential distance only: weights of
+// 3-D distance would correlate with the noise of the heights and hide it.
+inline double supportWeight(double x, double y)
+{
+	const double outside = 1.0 - x * x - y * y;
+	return outside > 0.0 ? outside * outside + 1e-4 : 0.0;
+}
+
+// residuals[s] of each sample (x, y; value z) of the patch; longer than the samples by a padding.
+void patchResiduals(
+	const SurfacePatch&  patch,
+	LocalSamples<1>&     samples,
+	std::vector<double>& residuals);
+
+// Weighted least squares in the frame of the patch, with
+// s^2 = sum W r^2 / (sum W - tr(A^-1 sum W^2 phi phi^T)). False, and invalid, when the samples do not
+// determine a quadric. `residuals` is left with those of the samples.
+bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples, std::vector<double>& residuals);
+
+// Scratch of a robust fit, one per thread; holds samples, their robust weights and residuals afterwards.
+struct RobustPatchScratch {
+	LocalSamples<1>     samples;
+	std::vector<double> residuals, absolute;
+};
+
+// A quadric through the majority of the points, wherever the others are: least-median-of-squares plane,
+// then iteratively reweighted least squares (Geman-McClure). Points come nearest first and `seed` draws the
+// planes tried. No support weight; the scale is 1.4826 median |r|, at least minScale.
+bool fitPatchRobustly(
+	SurfacePatch&           patch,
+	const Eigen::Matrix3Xd& points,
+	double                  radius,
+	double                  minScale,
+	std::uint32_t           seed,
+	RobustPatchScratch&     scratch);
+
+} // namespace curvature_lines

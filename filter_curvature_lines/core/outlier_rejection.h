@@ -1,5 +1,5 @@
-// Outlier rejection by votes between operating regions (A09 section 4.1), and by the height residual
-// that a point has on its voters' fitted surfaces, which also sees outliers with plausible normals.
+// Outlier rejection: the published votes between operating regions (A09 section 4.1), or the votes of
+// larger robust quadrics by height, which also see outliers in clusters and with plausible normals.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -9,10 +9,11 @@ namespace curvature_lines {
 
 struct OutlierOptions {
 	enum class Mode { Robust, Paper };
-	Mode   mode          = Mode::Robust;
-	double sensitivity   = 3.5; // Robust: height residuals above this many noise units are votes against
-	double voteThreshold = 0.5; // flagged when more than this share of the votes is against (A09: 1/2)
-	Index  rounds        = 3;   // re-estimation after each removal, at most
+	Mode   mode        = Mode::Robust;
+	double sensitivity = 3.5; // Robust: rejected beyond this many noise units from the surface
+	Index  rounds      = 3;   // Robust: re-estimation without the points rejected before, at most
+	// Paper: rejected when more than this share of the votes is against (A09: 1/2).
+	double                     voteThreshold = 0.5;
 	MinimumNeighborhoodOptions neighborhood;
 	RobustCurvatureOptions     curvature;
 };

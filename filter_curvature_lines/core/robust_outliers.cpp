@@ -1,0 +1,436 @@
+// Votes of overlapping robust quadrics, repeated without the points they reject.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "robust_outliers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "shuffled_order.h"
+#include "surface_patch.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr Index  usualNeighbors   = 150; // a cluster of outliers is a minority among so many
+constexpr Index  fewestNeighbors  = 24;
+constexpr Index  mostNeighbors    = 400;
+constexpr Index  smallestShare    = 25;  // a voter sees at most this part of the cloud
+constexpr Index  votesPerPoint    = 50;
+constexpr double minNoise         = 0.06; // of the spacing: what a quadric misses on a noise-free surface
+constexpr double noiseCorrection  = 1.06; // degrees of freedom and bias of the M-estimator
+constexpr double surfaceNoises    = 7.0;  // radius of a voter in noise units, at least
+constexpr double neighborGrowth   = 1.2;
+constexpr double minMajority      = 0.5;
+constexpr double supportDistance2 = 4.5; // squared Mahalanobis distance; 4 is the rim of a uniform disk
+constexpr double bentOverAnEdge   = 1.5; // times the noise around
+constexpr double bentWeight       = 1e-4;
+constexpr double acceptance       = 0.05; // a point is good if this share of its votes says so
+constexpr double coherence        = 1.5;  // noise units within which votes speak of one surface
+constexpr int    meanShifts       = 4;
+constexpr double isolatedShare    = 0.08; // of the usual number of votes
+constexpr double hysteresisShare  = 1.8 / 3.5;
+constexpr int    hysteresisPasses = 3;
+constexpr Index  hysteresisPeers  = 8;
+constexpr Index  minFlaggedPeers  = 3;
+constexpr double flaggedPeerShare = 0.4;
+
+double median(std::vector<double>& values)
+{
+	const auto middle = values.begin() + values.size() / 2;
+	std::nth_element(values.begin(), middle, values.end());
+	return *middle;
+}
+
+struct Voter {
+	Index              centre    = 0;
+	Index              neighbors = 0; // asked for
+	SurfacePatch       surface;
+	double             spacing = 0.0;
+	double             noise   = 0.0; // around it
+	Vector2d           supportCentre;
+	Matrix2d           supportShape; // inverse covariance of the points on the surface
+	std::vector<Index> ball;         // all points within the radius of the centre, also rejected ones
+};
+
+class RobustVote {
+public:
+	RobustVote(const Matrix3Xd& positions, double sensitivity);
+	void          fitVoters(const Progress& progress);
+	bool          vote(const Progress& progress); // true when something changed
+	double        noise() const;
+	OutlierResult result() const;
+
+private:
+	void  seatVoters();
+	void  fit(Voter& voter, const std::vector<Index>& active, const NeighborSearch& search) const;
+	void  measureNoise(const Progress& progress);
+	void  collectVoters(); // of each point
+	void  judge(Index i);
+	void  followClusters(const Progress& progress);
+	Index neighborsWanted(const Voter& voter) const;
+	Index size() const { return static_cast<Index>(m_positions.cols()); }
+
+	const Matrix3Xd&   m_positions;
+	double             m_sensitivity;
+	NeighborSearch     m_search;
+	std::vector<Index> m_order; // independent of the order of the input
+	std::vector<Index> m_rank;
+	Index              m_neighbors, m_step, m_largest;
+	std::vector<Voter> m_voters;
+	std::vector<char>  m_stale; // voters to be fitted again
+	NeighborLists      m_votersOf;
+
+	std::vector<char>   m_rejected, m_flagged;
+	std::vector<double> m_deviation; // noise units
+	std::vector<double> m_against, m_noise, m_spacing;
+	std::vector<Index>  m_votes;
+	Index               m_isolated = 0;
+};
+
+RobustVote::RobustVote(const Matrix3Xd& positions, double sensitivity) :
+		m_positions(positions),
+		m_sensitivity(sensitivity),
+		m_search(positions),
+		m_order(shuffledOrder(positions)),
+		m_rank(positions.cols()),
+		m_largest(std::max(fewestNeighbors, size() / smallestShare)),
+		m_rejected(size(), 0),
+		m_flagged(size(), 0),
+		m_deviation(size(), 0.0),
+		m_against(size(), 0.0),
+		m_noise(size(), 0.0),
+		m_spacing(size(), 0.0),
+		m_votes(size(), 0)
+{
+	for (Index k = 0; k < size(); ++k)
+		m_rank[m_order[k]] = k;
+	m_neighbors = std::min(usualNeighbors, m_largest);
+	m_step      = std::max<Index>(1, m_neighbors / votesPerPoint);
+}
+
+Index RobustVote::neighborsWanted(const Voter& voter) const
+{
+	if (!voter.surface.valid || voter.noise <= 0.0)
+		return voter.neighbors;
+	const double radius = surfaceNoises * voter.noise / voter.spacing;
+	const double inside = EIGEN_PI * radius * radius;
+	const auto   wanted = static_cast<Index>(
+        std::min(inside, double(std::min(mostNeighbors, m_largest))));
+	return wanted > neighborGrowth * voter.neighbors ? wanted : voter.neighbors;
+}
+
+// A random part of the cloud, and the points rejected before: those far from everything have no other
+// voter that could take them back.
+void RobustVote::seatVoters()
+{
+	std::vector<Index> seat(size(), -1);
+	for (std::size_t v = 0; v < m_voters.size(); ++v)
+		seat[m_voters[v].centre] = static_cast<Index>(v);
+	std::vector<Voter> voters;
+	std::vector<char>  stale;
+	for (Index k = 0; k < size(); ++k) {
+		const Index i = m_order[k];
+		if (k % m_step != 0 && !m_rejected[i])
+			continue;
+		if (seat[i] >= 0) {
+			Voter&      voter  = m_voters[seat[i]];
+			const Index wanted = neighborsWanted(voter);
+			stale.push_back(m_stale[seat[i]] || wanted != voter.neighbors);
+			voter.neighbors = wanted;
+			voters.push_back(std::move(voter));
+		}
+		else {
+			stale.push_back(1);
+			voters.emplace_back();
+			voters.back().centre    = i;
+			voters.back().neighbors = m_neighbors;
+		}
+	}
+	m_voters = std::move(voters);
+	m_stale  = std::move(stale);
+}
+
+void RobustVote::fit(
+	Voter& voter, const std::vector<Index>& active, const NeighborSearch& search) const
+{
+	thread_local RobustPatchScratch scratch;
+	thread_local Matrix3Xd          points;
+	const Vector3d                  centre = m_positions.col(voter.centre);
+	const std::vector<Index>        near   = search.nearest(centre, voter.neighbors);
+	points.resize(3, near.size());
+	for (std::size_t k = 0; k < near.size(); ++k)
+		points.col(k) = m_positions.col(active[near[k]]);
+	const double radius = near.empty() ? 0.0 : (points.col(near.size() - 1) - centre).norm();
+	voter.spacing       = radius * std::sqrt(EIGEN_PI / std::max<double>(near.size(), 1.0));
+	voter.ball.clear();
+	if (!fitPatchRobustly(
+			voter.surface, points, radius, minNoise * voter.spacing, m_rank[voter.centre], scratch))
+		return;
+	Vector2d  mean       = Vector2d::Zero();
+	Matrix2d  covariance = Matrix2d::Zero();
+	int       on         = 0;
+	const int n          = scratch.samples.size();
+	for (int pass = 0; pass < 2; ++pass) {
+		for (int k = 0; k < n; ++k) {
+			if (std::abs(scratch.residuals[k]) >= 3.0 * voter.surface.scale)
+				continue;
+			const Vector2d p(scratch.samples.x[k], scratch.samples.y[k]);
+			if (pass == 0) {
+				mean += p;
+				++on;
+			}
+			else {
+				covariance += (p - mean) * (p - mean).transpose();
+			}
+		}
+		if (pass == 0)
+			mean /= std::max(on, 1);
+	}
+	voter.surface.valid = on > minMajority * n;
+	if (!voter.surface.valid)
+		return;
+	voter.supportCentre = mean;
+	voter.supportShape  = (covariance / on + 1e-12 * Matrix2d::Identity()).inverse();
+	m_search.within(centre, radius, voter.ball);
+}
+
+void RobustVote::measureNoise(const Progress& progress)
+{
+	std::vector<Index> measuring;
+	for (std::size_t v = 0; v < m_voters.size(); ++v)
+		if (m_voters[v].surface.valid && !m_rejected[m_voters[v].centre])
+			measuring.push_back(static_cast<Index>(v));
+	Matrix3Xd origins(3, measuring.size());
+	for (std::size_t k = 0; k < measuring.size(); ++k)
+		origins.col(k) = m_voters[measuring[k]].surface.origin;
+	const NeighborSearch search(origins);
+	const Index          around = std::max<Index>(20, 2 * m_neighbors / m_step);
+	parallelFor(static_cast<Index>(m_voters.size()), progress, [&](Index v) {
+		Voter& voter = m_voters[v];
+		if (!voter.surface.valid)
+			return;
+		thread_local std::vector<double> scales;
+		scales.clear();
+		for (const Index k : search.nearest(voter.surface.origin, around))
+			scales.push_back(m_voters[measuring[k]].surface.scale);
+		voter.noise = noiseCorrection * (scales.empty() ? voter.surface.scale : median(scales));
+	});
+}
+
+void RobustVote::collectVoters()
+{
+	std::vector<Index>& offsets = m_votersOf.offsets;
+	offsets.assign(size() + 1, 0);
+	for (const Voter& voter : m_voters)
+		for (const Index i : voter.ball)
+			++offsets[i + 1];
+	for (Index i = 0; i < size(); ++i)
+		offsets[i + 1] += offsets[i];
+	m_votersOf.indices.resize(offsets.back());
+	std::vector<Index> next(offsets.begin(), offsets.end() - 1);
+	for (std::size_t v = 0; v < m_voters.size(); ++v)
+		for (const Index i : m_voters[v].ball)
+			m_votersOf.indices[next[i]++] = static_cast<Index>(v);
+}
+
+void RobustVote::judge(Index i)
+{
+	// Votes are displacements to the voter's surface: its normal has no meaningful sign.
+	struct Vote {
+		double   distance, weight;
+		Vector3d toSurface;
+	};
+	thread_local std::vector<Vote> votes;
+	votes.clear();
+	const Vector3d p     = m_positions.col(i);
+	double         noise = 0.0, spacing = 0.0, nearness = 0.0, sum = 0.0;
+	for (const Index v : m_votersOf[i]) {
+		const Voter&              voter = m_voters[v];
+		const SurfacePatch::Local local = voter.surface.toLocal(p);
+		const Vector2d            offset(local.x - voter.supportCentre.x(), local.y - voter.supportCentre.y());
+		if (offset.dot(voter.supportShape * offset) > supportDistance2)
+			continue;
+		const double r = voter.surface.residual(local);
+		const double radius = voter.surface.radius;
+		const double centred =
+			1.0 - 0.9 * (p - m_positions.col(voter.centre)).squaredNorm() / (radius * radius);
+		double weight = centred * centred;
+		noise += weight * voter.noise;
+		spacing += weight * voter.spacing;
+		nearness += weight;
+		if (voter.surface.scale * noiseCorrection > bentOverAnEdge * voter.noise)
+			weight *= bentWeight;
+		sum += weight;
+		votes.push_back({std::abs(r), weight, -r * voter.surface.normal(local.x, local.y)});
+	}
+	m_votes[i] = static_cast<Index>(votes.size());
+	if (votes.empty())
+		return;
+	noise /= nearness;
+	m_noise[i]   = noise;
+	m_spacing[i] = spacing / nearness;
+	std::sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
+		return a.distance < b.distance;
+	});
+	Vector3d toSurface = votes.back().toSurface;
+	double   passed = 0.0, for_ = 0.0;
+	bool found=false;
+	for (const Vote& vote : votes) {
+		passed += vote.weight;
+		if (!found && passed >= acceptance * sum) {
+			toSurface = vote.toSurface;
+			found=true;
+		}
+		if (vote.distance <= m_sensitivity * noise)
+			for_ += vote.weight;
+	}
+	// The quantile alone is optimistic: go to the mean of the votes that agree with it.
+	for (int step = 0; step < meanShifts; ++step) {
+		Vector3d mean   = Vector3d::Zero();
+		double   weight = 0.0;
+		for (const Vote& vote : votes) {
+			if ((vote.toSurface - toSurface).squaredNorm() > coherence * coherence * noise * noise)
+				continue;
+			mean += vote.weight * vote.toSurface;
+			weight += vote.weight;
+		}
+		if (weight <= 0.0)
+			break;
+		toSurface = mean / weight;
+	}
+	m_deviation[i] = toSurface.norm() / noise;
+	m_against[i]   = std::clamp(1.0 - for_ / sum, 0.0, 1.0);
+}
+
+// A doubtful point among rejected ones belongs to their cluster.
+void RobustVote::followClusters(const Progress& progress)
+{
+	std::vector<Index> doubtful;
+	for (Index i = 0; i < size(); ++i)
+		if (!m_flagged[i] && m_deviation[i] > hysteresisShare * m_sensitivity)
+			doubtful.push_back(i);
+	std::vector<std::vector<Index>> peers(doubtful.size());
+	parallelFor(static_cast<Index>(doubtful.size()), progress, [&](Index d) {
+		const Index i = doubtful[d];
+		for (const Index j : m_search.nearest(m_positions.col(i), hysteresisPeers + 1))
+			if (j != i && (m_positions.col(j) - m_positions.col(i)).norm() < m_spacing[i])
+				peers[d].push_back(j);
+	});
+	for (int pass = 0; pass < hysteresisPasses; ++pass) {
+		const std::vector<char> before = m_flagged;
+		for (std::size_t d = 0; d < doubtful.size(); ++d) {
+			const auto flagged = std::count_if(
+				peers[d].begin(), peers[d].end(), [&](Index j) { return before[j]; });
+			if (flagged >= minFlaggedPeers && flagged >= flaggedPeerShare * peers[d].size())
+				m_flagged[doubtful[d]] = 1;
+		}
+	}
+}
+
+void RobustVote::fitVoters(const Progress& progress)
+{
+	std::vector<Index> active;
+	for (const Index i : m_order)
+		if (!m_rejected[i])
+			active.push_back(i);
+	seatVoters();
+	Matrix3Xd activePositions(3, active.size());
+	for (std::size_t k = 0; k < active.size(); ++k)
+		activePositions.col(k) = m_positions.col(active[k]);
+	const NeighborSearch search(activePositions);
+	parallelFor(
+		static_cast<Index>(m_voters.size()),
+		progress.sub(0.0, 0.9, "Fitting surfaces"),
+		[&](Index v) {
+			if (m_stale[v])
+				fit(m_voters[v], active, search);
+		});
+	measureNoise(progress.sub(0.9, 1.0, "Measuring the noise"));
+}
+
+bool RobustVote::vote(const Progress& progress)
+{
+	collectVoters();
+	parallelFor(size(), progress.sub(0.0, 0.9, "Voting"), [&](Index i) { judge(i); });
+
+	std::vector<double> counts(m_votes.begin(), m_votes.end());
+	const double        fewest = counts.empty() ? 0.0 : isolatedShare * median(counts);
+	m_isolated                 = 0;
+	for (Index i = 0; i < size(); ++i) {
+		const bool isolated = m_votes[i] == 0 || m_votes[i] < fewest;
+		m_flagged[i]        = isolated || m_deviation[i] > m_sensitivity;
+		m_isolated += isolated;
+		if (isolated)
+			m_against[i] = 1.0;
+	}
+	followClusters(progress.sub(0.9, 1.0, "Voting"));
+
+	m_stale.assign(m_voters.size(), 0);
+	bool changed = false;
+	for (Index i = 0; i < size(); ++i) {
+		if (m_flagged[i] == m_rejected[i])
+			continue;
+		changed = true;
+		for (const Index v : m_votersOf[i])
+			m_stale[v] = 1;
+	}
+	m_rejected = m_flagged;
+	for (const Voter& voter : m_voters)
+		changed |= neighborsWanted(voter) != voter.neighbors;
+	return changed;
+}
+
+double RobustVote::noise() const
+{
+	std::vector<double> noise;
+	for (const Voter& voter : m_voters)
+		if (voter.surface.valid)
+			noise.push_back(voter.noise);
+	return noise.empty() ? 0.0 : median(noise);
+}
+
+OutlierResult RobustVote::result() const
+{
+	OutlierResult result;
+	result.outlier  = m_rejected;
+	result.score    = m_against;
+	result.isolated = m_isolated;
+	result.noise    = noise();
+	return result;
+}
+
+} // namespace
+
+OutlierResult rejectByRobustVotes(
+	const Matrix3Xd& positions, double sensitivity, Index rounds, const Progress& progress)
+{
+	RobustVote    votes(positions, sensitivity);
+	const Index   most = std::max<Index>(rounds, 1);
+	Index         used = 0;
+	for (bool changed = true; changed && used < most; ++used) {
+		const Progress part =
+			progress.sub(double(used) / most, double(used + 1) / most, "Rejecting outliers");
+		votes.fitVoters(part.sub(0.0, 0.8, "Fitting surfaces"));
+		changed = votes.vote(part.sub(0.8, 1.0, "Voting"));
+	}
+	OutlierResult result = votes.result();
+	result.roundsUsed    = used;
+	return result;
+}
+
+double surfaceNoise(const Matrix3Xd& positions, const Progress& progress)
+{
+	RobustVote votes(positions, 0.0);
+	votes.fitVoters(progress);
+	return votes.noise();
+}
+
+} // namespace curvature_lines

@@ -173,6 +173,12 @@ SurfacePatch::Local SurfacePatch::toLocal(const Vector3d& p) const
 	return {d.dot(frame.u) / radius, d.dot(frame.v) / radius, d.dot(frame.n)};
 }
 
+double SurfacePatch::height(double x, double y) const
+{
+	const auto& a = coefficients;
+	return a[0] + x * (a[1] + a[3] * x + a[4] * y) + y * (a[2] + a[5] * y);
+}
+
 Vector2d SurfacePatch::gradient(double x, double y) const
 {
 	const auto& a = coefficients;
@@ -187,9 +193,7 @@ Vector3d SurfacePatch::normal(double x, double y) const
 
 double SurfacePatch::residual(const Local& p) const
 {
-	const auto&  a      = coefficients;
-	const double height = a[0] + p.x * (a[1] + a[3] * p.x + a[4] * p.y) + p.y * (a[2] + a[5] * p.y);
-	return (p.z - height) / std::sqrt(1.0 + gradient(p.x, p.y).squaredNorm());
+	return (p.z - height(p.x, p.y)) / std::sqrt(1.0 + gradient(p.x, p.y).squaredNorm());
 }
 
 double SurfacePatch::leverage(double x, double y) const

@@ -34,6 +34,7 @@ struct SurfacePatch {
 	}
 
 	Local           toLocal(const Eigen::Vector3d& p) const;
+	double          height(double x, double y) const;
 	Eigen::Vector2d gradient(double x, double y) const;
 	Eigen::Vector3d normal(double x, double y) const;
 	// Signed distance from the surface along its normal, to first order.

@@ -95,6 +95,49 @@ private:
 	double                      m_squaredRadius;
 };
 
+class UnsortedBallSet {
+public:
+	using DistanceType = double;
+	UnsortedBallSet(std::vector<Index>& found, double squaredRadius) :
+			m_found(found), m_squaredRadius(squaredRadius)
+	{
+		m_found.clear();
+	}
+	std::size_t size() const { return m_found.size(); }
+	bool        full() const { return true; }
+	void        sort() {}
+	double      worstDist() const { return m_squaredRadius; }
+	bool        addPoint(double, Index index)
+	{
+		m_found.push_back(index);
+		return true;
+	}
+
+private:
+	std::vector<Index>& m_found;
+	double              m_squaredRadius;
+};
+
+// Ends the search at the first point it meets.
+class FirstInBall {
+public:
+	using DistanceType = double;
+	explicit FirstInBall(double squaredRadius) : m_squaredRadius(squaredRadius) {}
+	std::size_t size() const { return m_found ? 1 : 0; }
+	bool        full() const { return true; }
+	void        sort() {}
+	double      worstDist() const { return m_squaredRadius; }
+	bool        addPoint(double, Index)
+	{
+		m_found = true;
+		return false;
+	}
+
+private:
+	bool   m_found = false;
+	double m_squaredRadius;
+};
+
 std::vector<Index> sortedIndices(std::vector<DistanceIndex>& found)
 {
 	std::sort(found.begin(), found.end());
@@ -254,6 +297,25 @@ std::vector<Index> NeighborSearch::within(const Eigen::Vector3d& query, double r
 	BallSet                                 set(found, radius * radius);
 	m_tree->index.radiusSearchCustomCallback(query.data(), set);
 	return sortedIndices(found);
+}
+
+void NeighborSearch::within(
+	const Eigen::Vector3d& query, double radius, std::vector<Index>& found) const
+{
+	found.clear();
+	if (!(radius >= 0.0) || m_tree->adaptor.positions.cols() == 0)
+		return;
+	UnsortedBallSet set(found, radius * radius);
+	m_tree->index.radiusSearchCustomCallback(query.data(), set);
+}
+
+bool NeighborSearch::anyWithin(const Eigen::Vector3d& query, double radius) const
+{
+	if (!(radius >= 0.0) || m_tree->adaptor.positions.cols() == 0)
+		return false;
+	FirstInBall first(radius * radius);
+	m_tree->index.radiusSearchCustomCallback(query.data(), first);
+	return first.size() > 0;
 }
 
 MinimumNeighborhoods minimumNeighborhoods(

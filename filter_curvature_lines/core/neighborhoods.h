@@ -21,6 +21,9 @@ public:
 	std::vector<Index> nearest(const Eigen::Vector3d& query, Index k) const;
 	// All points within radius, by increasing distance, ties by index.
 	std::vector<Index> within(const Eigen::Vector3d& query, double radius) const;
+	// The same without sorting, into storage the caller keeps: for large balls. The order is fixed.
+	void within(const Eigen::Vector3d& query, double radius, std::vector<Index>& found) const;
+	bool anyWithin(const Eigen::Vector3d& query, double radius) const;
 
 private:
 	struct Tree;

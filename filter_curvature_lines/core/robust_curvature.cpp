@@ -287,7 +287,7 @@ CurvatureField robustCurvature(
 	const double commonScale = commonCentreScale(centre);
 
 	CurvatureField field;
-	for (auto* values : {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence})
+	for (auto* values : {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence, &field.feature})
 		values->setZero(n);
 	for (auto* vectors : {&field.d1, &field.d2, &field.correctedNormals})
 		vectors->resize(3, n);

@@ -41,6 +41,7 @@ struct CurvatureField {
 	Eigen::VectorXd  error;       // N, standard error of k1 - k2 (1/length)
 	Eigen::VectorXd  radius;      // N, radius of the operating region (length)
 	Eigen::VectorXd  confidence;  // N, C_j = sum_i W_i[j] (A09 section 5.1)
+	Eigen::VectorXd  feature;     // N, strength of the sharp edge or corner nearby, 0..1
 	std::vector<PointStatus> status;
 	StatisticalWeights       weights;
 	// The affine model's normal at p_i: unit(sum_j W_j (n_j - X d_j)) (A09 end of section 3; R07).

@@ -1,0 +1,355 @@
+// Half-sample risk of the candidate scales, for the whole cloud and around every probe.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "adaptive_scale.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr Index  firstCount   = 42;  // points in the smallest ball
+constexpr double ladderStep   = 1.3;
+constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
+constexpr double largestNormalRadius = 0.36;
+constexpr Index  fitCap       = 256;
+constexpr int    probeIterations = 3;
+constexpr double largestResidual = 0.2;  // radii, median over probes
+constexpr double clippedResidual = 0.15; // the least a ball within the noisy layer has
+constexpr double rimOffset       = 0.12; // radii: probes with a larger one lie at a rim
+constexpr double trim            = 0.05;
+// A part of the cloud has a scale of its own if it is this large and its risk falls to this share.
+constexpr Index  minPoolPoints = 1280;
+constexpr Index  minPoolProbes = 32;
+constexpr double switchRatio   = 0.5;
+constexpr double riskExponent  = 4.0;
+constexpr double smallestShare = 0.1; // of the best one's
+constexpr std::size_t maxMixed = 4;
+
+struct Family {
+	int    degree;
+	double normalRatio; // normalRadius / height.radius
+};
+// From little bias and much variance to the reverse.
+constexpr std::array<Family, 3> families = {{{4, 0.0}, {4, 1.7}, {2, 2.4}}};
+
+struct ProbeEstimate {
+	Eigen::Matrix3d shape    = Eigen::Matrix3d::Zero();
+	double          residual = 0.0; // radii
+	double          offset   = 0.0;
+	bool            valid    = false;
+};
+
+// One candidate scale on both halves.
+struct Trial {
+	CurvatureScale                          scale;
+	std::array<std::vector<ProbeEstimate>, 2> halves;
+
+	bool valid(Index probe) const { return halves[0][probe].valid && halves[1][probe].valid; }
+};
+
+std::vector<ProbeEstimate> estimateProbes(
+	const PointSubsets&          subsets,
+	const SurfaceAnchors*        anchors,
+	const std::vector<SurfaceElement>& starts,
+	const CurvatureScale&        scale)
+{
+	(void) subsets;
+	std::vector<ProbeEstimate> estimates(starts.size());
+	parallelFor(static_cast<Index>(starts.size()), {}, [&](Index p) {
+		SurfaceElement element = starts[p];
+		if (!element.valid)
+			return;
+		if (anchors)
+			element = anchors->normalField(element, scale.normalRadius);
+		estimates[p] = {
+			element.shape, element.residual / scale.height.radius, element.offset, element.valid};
+	});
+	return estimates;
+}
+
+double medianOf(std::vector<double> values)
+{
+	if (values.empty())
+		return infinity;
+	const auto middle = values.begin() + values.size() / 2;
+	std::nth_element(values.begin(), middle, values.end());
+	return *middle;
+}
+
+// Risk of every trial, from the terms of the probes in `pool`.
+class RiskOfPool {
+public:
+	RiskOfPool(const std::vector<Trial>& trials, const std::vector<Index>& pool) :
+			m_trials(trials), m_pool(pool)
+	{
+		for (const Trial& trial : trials) {
+			m_variance.push_back(variance(trial));
+			m_residual.push_back(residual(trial));
+		}
+		dropBelowNoise();
+		for (std::size_t c = 0; c < trials.size(); ++c)
+			m_risk.push_back(
+				m_variance[c] < infinity ? m_variance[c] + squaredBias(c) : infinity);
+	}
+	const std::vector<double>& risk() const { return m_risk; }
+	const std::vector<double>& variance() const { return m_variance; }
+	const std::vector<double>& residual() const { return m_residual; }
+
+private:
+	double variance(const Trial& trial) const
+	{
+		std::vector<double> terms;
+		for (const Index p : m_pool)
+			if (trial.valid(p))
+				terms.push_back(
+					0.25 * (trial.halves[0][p].shape - trial.halves[1][p].shape).squaredNorm());
+		if (terms.size() < 8 || terms.size() < 0.875 * m_pool.size())
+			return infinity;
+		std::sort(terms.begin(), terms.end());
+		const auto kept = static_cast<std::size_t>(std::ceil((1.0 - trim) * terms.size()));
+		return std::accumulate(terms.begin(), terms.begin() + kept, 0.0) / kept;
+	}
+
+	double residual(const Trial& trial) const
+	{
+		std::vector<double> residuals;
+		for (const Index p : m_pool)
+			for (const auto& half : trial.halves)
+				if (half[p].valid)
+					residuals.push_back(half[p].residual);
+		return medianOf(residuals);
+	}
+
+	// A ball that clips the noisy layer takes the noise for shape: its residual is large for its radius,
+	// and so is that of all finer ones, which have nothing to tell either. (A ball too large for the shape
+	// has such a residual as well, but finer ones have not.)
+	void dropBelowNoise()
+	{
+		for (std::size_t c = 0; c < m_trials.size(); ++c) {
+			if (!(m_residual[c] > largestResidual))
+				continue;
+			const CurvatureScale& scale = m_trials[c].scale;
+			m_variance[c]               = infinity;
+			double smallest             = infinity;
+			for (std::size_t q = 0; q < m_trials.size(); ++q)
+				if (m_trials[q].scale.family == scale.family && m_trials[q].scale.level < scale.level)
+					smallest = std::min(smallest, m_residual[q]);
+			if (smallest < clippedResidual)
+				continue;
+			for (std::size_t q = 0; q < m_trials.size(); ++q)
+				if (m_trials[q].scale.level < scale.level)
+					m_variance[q] = infinity;
+		}
+	}
+
+	// What has less bias than `scale`, and how the radii compare; 1 where neither is known to.
+	static double radiusRatio(const CurvatureScale& finer, const CurvatureScale& scale)
+	{
+		if (finer.family == scale.family)
+			return std::min(1.0, finer.height.radius / scale.height.radius);
+		const bool less = finer.family < scale.family && finer.level <= scale.level;
+		return less ? std::min(1.0, finer.radius() / scale.radius()) : 1.0;
+	}
+
+	// Bias grows with the fourth power of the radius: every finer scale q gives an estimate
+	// (T_c - T_q)_A : (T_c - T_q)_B / (1 - (r_q / r_c)^4)^2 of the squared bias at c, unbiased because the
+	// halves are independent. They are averaged by their precision.
+	double squaredBias(std::size_t c) const
+	{
+		const Trial& trial = m_trials[c];
+		double       sum = 0.0, precision = 0.0;
+		for (std::size_t q = 0; q < m_trials.size(); ++q) {
+			const Trial& finer = m_trials[q];
+			const double ratio = std::pow(radiusRatio(finer.scale, trial.scale), 4);
+			if (ratio > 0.5 || !(m_variance[q] < infinity))
+				continue;
+			std::vector<double> terms;
+			for (const Index p : m_pool)
+				if (trial.valid(p) && finer.valid(p))
+					terms.push_back(
+						((trial.halves[0][p].shape - finer.halves[0][p].shape)
+							 .cwiseProduct(trial.halves[1][p].shape - finer.halves[1][p].shape))
+							.sum());
+			if (terms.size() < 8)
+				continue;
+			std::sort(terms.begin(), terms.end());
+			const auto cut   = static_cast<std::size_t>(0.5 * trim * terms.size());
+			const auto count = static_cast<double>(terms.size() - 2 * cut);
+			double     total = 0.0, squares = 0.0;
+			for (std::size_t t = cut; t < terms.size() - cut; ++t) {
+				total += terms[t];
+				squares += terms[t] * terms[t];
+			}
+			const double mean = total / count;
+			const double squaredError =
+				std::max(0.0, squares / count - mean * mean) / count + 1e-30;
+			const double share  = (1.0 - ratio) * (1.0 - ratio);
+			const double weight = share * share / squaredError;
+			sum += weight * mean / share;
+			precision += weight;
+		}
+		return precision > 0.0 ? std::max(0.0, sum / precision) : 0.0;
+	}
+
+	const std::vector<Trial>& m_trials;
+	const std::vector<Index>& m_pool;
+	std::vector<double>       m_variance, m_residual, m_risk;
+};
+
+std::size_t argmin(const std::vector<double>& values)
+{
+	return std::min_element(values.begin(), values.end()) - values.begin();
+}
+
+// Estimates of about the same risk are better averaged than chosen from.
+ScaleMixture mixtureOf(const RiskOfPool& pool)
+{
+	const std::vector<double>& risk = pool.risk();
+	const std::size_t          best = argmin(risk);
+	ScaleMixture               mixture;
+	double                     total = 0.0;
+	for (std::size_t c = 0; c < risk.size(); ++c) {
+		const double share = risk[c] > risk[best] ? std::pow(risk[best] / risk[c], riskExponent) : 1.0;
+		if (risk[c] < infinity && share > smallestShare)
+			mixture.weights.emplace_back(int(c), share);
+	}
+	std::stable_sort(mixture.weights.begin(), mixture.weights.end(), [](const auto& a, const auto& b) {
+		return a.second > b.second;
+	});
+	if (mixture.weights.size() > maxMixed)
+		mixture.weights.resize(maxMixed);
+	for (const auto& [c, share] : mixture.weights)
+		total += share;
+	for (auto& [c, share] : mixture.weights) {
+		share /= total;
+		mixture.variance += share * pool.variance()[c];
+	}
+	return mixture;
+}
+
+double radiusHolding(const PointSample& sample, Index count)
+{
+	std::vector<double> radii;
+	for (Index i = 0; i < std::min<Index>(sample.cloud.size(), 60); ++i) {
+		const auto near = sample.search.nearest(sample.cloud.positions.col(i), count);
+		radii.push_back((sample.cloud.positions.col(near.back()) - sample.cloud.positions.col(i)).norm());
+	}
+	return medianOf(radii);
+}
+
+PointCloud slice(const PointCloud& cloud, Index from, Index to)
+{
+	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
+}
+
+} // namespace
+
+ScaleSelection selectScales(
+	const PointSample& sample, const AdaptiveScaleOptions& options, const Progress& progress)
+{
+	const Index       n = sample.cloud.size();
+	const PointSample first(slice(sample.cloud, 0, n / 2)), second(slice(sample.cloud, n / 2, n));
+	const std::array<const PointSample*, 2> halves = {&first, &second};
+
+	ScaleSelection selection;
+	selection.smallestRadius = radiusHolding(sample, firstCount);
+	const Index probes       = std::min(n, std::clamp<Index>(n / 20, options.minProbes, options.maxProbes));
+	selection.positions      = sample.cloud.positions.leftCols(probes);
+
+	std::vector<Trial> trials;
+	int                level = 0;
+	for (double radius = selection.smallestRadius; radius < largestHeightRadius;
+		 radius *= ladderStep, ++level) {
+		std::vector<Trial> here;
+		for (int f = 0; f < int(families.size()); ++f)
+			if (families[f].normalRatio * radius < largestNormalRadius)
+				here.push_back(
+					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level}, {}});
+		for (int h = 0; h < 2; ++h) {
+			const PointSubsets subsets(*halves[h], radius, fitCap);
+			std::array<std::vector<SurfaceElement>, 5>            starts;  // by degree
+			std::array<std::unique_ptr<const SurfaceAnchors>, 5> anchors;
+			for (Trial& trial : here) {
+				const HeightScale& height = trial.scale.height;
+				auto&              at     = starts[height.degree];
+				if (at.empty()) {
+					at.resize(probes);
+					parallelFor(probes, {}, [&](Index p) {
+						at[p] = surfaceAt(
+							subsets,
+							p,
+							selection.positions.col(p),
+							sample.cloud.normals.col(p),
+							height,
+							probeIterations);
+					});
+				}
+				auto& field = anchors[height.degree];
+				if (trial.scale.normalRadius > 0.0 && !field)
+					field = std::make_unique<const SurfaceAnchors>(*halves[h], subsets, height);
+				trial.halves[h] = estimateProbes(
+					subsets, trial.scale.normalRadius > 0.0 ? field.get() : nullptr, at, trial.scale);
+			}
+		}
+		trials.insert(trials.end(), here.begin(), here.end());
+		progress.report(std::log(radius / selection.smallestRadius) / std::log(largestHeightRadius / selection.smallestRadius));
+	}
+
+	// Probes near a rim speak only if there are hardly others.
+	std::vector<Index> inner;
+	{
+		const double middle = std::sqrt(selection.smallestRadius * largestHeightRadius);
+		const Trial* near   = nullptr;
+		for (const Trial& trial : trials)
+			if (trial.scale.family == 0 &&
+				(!near || std::abs(std::log(trial.scale.height.radius / middle)) <
+							  std::abs(std::log(near->scale.height.radius / middle))))
+				near = &trial;
+		for (Index p = 0; p < probes; ++p)
+			if (0.5 * (near->halves[0][p].offset + near->halves[1][p].offset) < rimOffset)
+				inner.push_back(p);
+		if (inner.size() < 0.3 * probes) {
+			inner.resize(probes);
+			std::iota(inner.begin(), inner.end(), 0);
+		}
+	}
+
+	for (const Trial& trial : trials)
+		selection.scales.push_back(trial.scale);
+	const RiskOfPool whole(trials, inner);
+	Eigen::Matrix3Xd innerPositions(3, inner.size());
+	for (std::size_t k = 0; k < inner.size(); ++k)
+		innerPositions.col(k) = selection.positions.col(inner[k]);
+	const NeighborSearch search(innerPositions);
+	// From large pools to small ones: what a larger pool knows is not given up for what a smaller one
+	// merely thinks.
+	const Index smallest =
+		std::max(minPoolProbes, static_cast<Index>(std::int64_t(minPoolPoints) * probes / n));
+	selection.mixtures.assign(probes, mixtureOf(whole));
+	parallelFor(probes, {}, [&](Index p) {
+		std::size_t chosen = argmin(whole.risk());
+		for (const Index size : {4 * smallest, smallest}) {
+			if (size >= static_cast<Index>(inner.size()))
+				continue;
+			std::vector<Index> pool;
+			for (const Index k : search.nearest(selection.positions.col(p), size))
+				pool.push_back(inner[k]);
+			const RiskOfPool  around(trials, pool);
+			const std::size_t other = argmin(around.risk());
+			if (around.risk()[other] < switchRatio * around.risk()[chosen]) {
+				chosen                = other;
+				selection.mixtures[p] = mixtureOf(around);
+			}
+		}
+	});
+	return selection;
+}
+
+} // namespace curvature_lines

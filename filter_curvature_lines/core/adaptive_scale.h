@@ -1,0 +1,46 @@
+// The scale at which curvature is estimated, found from the cloud itself: all candidate scales run on two
+// random halves of the points; the halves are independent, so their difference measures the variance of
+// an estimate and their agreement measures its bias.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "surface_anchors.h"
+
+namespace curvature_lines {
+
+// How to estimate the shape operator: a height polynomial at radius height.radius, then, unless
+// normalRadius is 0, a cubic polynomial of the normals of anchors within normalRadius.
+struct CurvatureScale {
+	HeightScale height;
+	double      normalRadius = 0.0; // length
+	int         family       = 0;   // scales of one family differ in size only
+	int         level        = 0;
+
+	double radius() const { return std::max(height.radius, normalRadius); }
+};
+
+struct AdaptiveScaleOptions {
+	Index minProbes = 512; // places where scales are compared: one in 20 points within these bounds
+	Index maxProbes = 2048;
+};
+
+// How much an estimate at one place relies on each scale.
+struct ScaleMixture {
+	std::vector<std::pair<int, double>> weights;        // (index into ScaleSelection::scales, share), the largest first
+	double                              variance = 0.0; // of the shape operator, 1/length^2
+};
+
+struct ScaleSelection {
+	std::vector<CurvatureScale> scales;    // all candidates
+	Eigen::Matrix3Xd            positions; // of the probes
+	std::vector<ScaleMixture>   mixtures;  // per probe
+	double                      smallestRadius = 0.0; // where the ladder starts
+};
+
+// `sample`: shuffled, with gate normals.
+ScaleSelection selectScales(
+	const PointSample&          sample,
+	const AdaptiveScaleOptions& options  = {},
+	const Progress&             progress = {});
+
+} // namespace curvature_lines

@@ -25,11 +25,20 @@ constexpr Index  mostNeighbors    = 400;
 constexpr Index  smallestShare    = 25;  // a voter sees at most this part of the cloud
 constexpr Index  votesPerPoint    = 50;
 constexpr double minNoise         = 0.06; // of the spacing: what a quadric misses on a noise-free surface
-constexpr double noiseCorrection  = 1.06; // degrees of freedom and bias of the M-estimator
+// What a robust quadric of n points fits away of the deviation is this over n (by simulation on planes).
+constexpr Index  crowdSize        = 6;
+constexpr double crowding         = 0.6; // of the distance that evenly spread points have
+constexpr double fewestThinned    = 0.8;
+constexpr Index  mostSearched     = 4;
+constexpr double lostDeviation    = 9.5;
 constexpr double surfaceNoises    = 7.0;  // radius of a voter in noise units, at least
 constexpr double neighborGrowth   = 1.2;
-constexpr double minMajority      = 0.5;
+constexpr double minMajority      = 0.35;
 constexpr double supportDistance2 = 4.5; // squared Mahalanobis distance; 4 is the rim of a uniform disk
+constexpr double rimDistance2     = 9.0; // a corner of a quarter of a disk is at 7.4
+constexpr double rimWeight        = 1e-2;
+constexpr Index  company          = 4;
+constexpr double companyDistance  = 3.0; // spacings
 constexpr double bentOverAnEdge   = 1.5; // times the noise around
 constexpr double bentWeight       = 1e-4;
 constexpr double acceptance       = 0.05; // a point is good if this share of its votes says so
@@ -55,10 +64,16 @@ struct Voter {
 	SurfacePatch       surface;
 	double             spacing = 0.0;
 	double             noise   = 0.0; // around it
+	bool               bent    = false; // over an edge
 	Vector2d           supportCentre;
 	Matrix2d           supportShape; // inverse covariance of the points on the surface
 	std::vector<Index> ball;         // all points within the radius of the centre, also rejected ones
 };
+
+double deviation(const Voter& voter)
+{
+	return voter.surface.scale / (1.0 - lostDeviation / voter.neighbors);
+}
 
 class RobustVote {
 public:
@@ -74,6 +89,7 @@ private:
 	void  measureNoise(const Progress& progress);
 	void  collectVoters(); // of each point
 	void  judge(Index i);
+	bool  hasCompany(Index i, double spacing) const;
 	void  followClusters(const Progress& progress);
 	Index neighborsWanted(const Voter& voter) const;
 	Index size() const { return static_cast<Index>(m_positions.cols()); }
@@ -90,6 +106,7 @@ private:
 
 	std::vector<char>   m_rejected, m_flagged;
 	std::vector<double> m_deviation; // noise units
+	std::vector<double> m_crowd; // distance of the 6th neighbour
 	std::vector<double> m_against, m_noise, m_spacing;
 	std::vector<Index>  m_votes;
 	Index               m_isolated = 0;
@@ -112,6 +129,11 @@ RobustVote::RobustVote(const Matrix3Xd& positions, double sensitivity) :
 {
 	for (Index k = 0; k < size(); ++k)
 		m_rank[m_order[k]] = k;
+	m_crowd.resize(size());
+	parallelFor(size(), {}, [&](Index i) {
+		const auto near = m_search.nearest(m_positions.col(i), crowdSize + 1);
+		m_crowd[i]      = (m_positions.col(near.back()) - m_positions.col(i)).norm();
+	});
 	m_neighbors = std::min(usualNeighbors, m_largest);
 	m_step      = std::max<Index>(1, m_neighbors / votesPerPoint);
 }
@@ -164,13 +186,33 @@ void RobustVote::fit(
 	thread_local RobustPatchScratch scratch;
 	thread_local Matrix3Xd          points;
 	const Vector3d                  centre = m_positions.col(voter.centre);
-	const std::vector<Index>        near   = search.nearest(centre, voter.neighbors);
-	points.resize(3, near.size());
-	for (std::size_t k = 0; k < near.size(); ++k)
-		points.col(k) = m_positions.col(active[near[k]]);
-	const double radius = near.empty() ? 0.0 : (points.col(near.size() - 1) - centre).norm();
-	voter.spacing       = radius * std::sqrt(EIGEN_PI / std::max<double>(near.size(), 1.0));
 	voter.ball.clear();
+	thread_local std::vector<Index> even;
+	double radius = 0.0;
+	for (Index asked = voter.neighbors, attempt = 0; attempt < 2; ++attempt) {
+		const std::vector<Index>        near   = search.nearest(centre, asked);
+		if (near.empty()) return;
+		radius = (m_positions.col(active[near.back()]) - centre).norm();
+		const double usual = crowding * radius * std::sqrt(double(crowdSize) / near.size());
+		even.clear();
+		for (const Index n : near) {
+			const Index i = active[n];
+			const double share = m_crowd[i] / usual;
+			if (share >= 1.0 || m_rank[i] < share * share * size())
+				even.push_back(i);
+		}
+		if (even.size() >= fewestThinned * voter.neighbors || near.size() < std::size_t(asked))
+			break;
+		asked = std::min<Index>(mostSearched * asked, asked * voter.neighbors / std::max<Index>(even.size(), 1));
+	}
+	if (Index(even.size()) > voter.neighbors) {
+		even.resize(voter.neighbors);
+		radius = (m_positions.col(even.back()) - centre).norm();
+	}
+	points.resize(3, even.size());
+	for (std::size_t k = 0; k < even.size(); ++k)
+		points.col(k) = m_positions.col(even[k]);
+	voter.spacing       = radius * std::sqrt(EIGEN_PI / std::max<double>(even.size(), 1.0));
 	if (!fitPatchRobustly(
 			voter.surface, points, radius, minNoise * voter.spacing, m_rank[voter.centre], scratch))
 		return;
@@ -220,8 +262,9 @@ void RobustVote::measureNoise(const Progress& progress)
 		thread_local std::vector<double> scales;
 		scales.clear();
 		for (const Index k : search.nearest(voter.surface.origin, around))
-			scales.push_back(m_voters[measuring[k]].surface.scale);
-		voter.noise = noiseCorrection * (scales.empty() ? voter.surface.scale : median(scales));
+			scales.push_back(deviation(m_voters[measuring[k]]));
+		voter.noise = scales.empty() ? deviation(voter) : median(scales);
+		voter.bent  = deviation(voter) > bentOverAnEdge * voter.noise;
 	});
 }
 
@@ -241,22 +284,31 @@ void RobustVote::collectVoters()
 			m_votersOf.indices[next[i]++] = static_cast<Index>(v);
 }
 
+bool RobustVote::hasCompany(Index i, double spacing) const
+{
+	const auto near = m_search.nearest(m_positions.col(i), company + 1);
+	return static_cast<Index>(near.size()) > company &&
+		   (m_positions.col(near[company]) - m_positions.col(i)).norm() < companyDistance * spacing;
+}
+
 void RobustVote::judge(Index i)
 {
 	// Votes are displacements to the voter's surface: its normal has no meaningful sign.
 	struct Vote {
 		double   distance, weight;
 		Vector3d toSurface;
+		bool rim;
 	};
 	thread_local std::vector<Vote> votes;
 	votes.clear();
 	const Vector3d p     = m_positions.col(i);
-	double         noise = 0.0, spacing = 0.0, nearness = 0.0, sum = 0.0;
+	double         noise = 0.0, spacing = 0.0, nearness = 0.0, sum = 0.0, rimSum = 0.0;
 	for (const Index v : m_votersOf[i]) {
 		const Voter&              voter = m_voters[v];
 		const SurfacePatch::Local local = voter.surface.toLocal(p);
 		const Vector2d            offset(local.x - voter.supportCentre.x(), local.y - voter.supportCentre.y());
-		if (offset.dot(voter.supportShape * offset) > supportDistance2)
+		const double              fromMiddle = offset.dot(voter.supportShape * offset);
+		if (fromMiddle > rimDistance2)
 			continue;
 		const double r = voter.surface.residual(local);
 		const double radius = voter.surface.radius;
@@ -266,11 +318,19 @@ void RobustVote::judge(Index i)
 		noise += weight * voter.noise;
 		spacing += weight * voter.spacing;
 		nearness += weight;
-		if (voter.surface.scale * noiseCorrection > bentOverAnEdge * voter.noise)
-			weight *= bentWeight;
-		sum += weight;
-		votes.push_back({std::abs(r), weight, -r * voter.surface.normal(local.x, local.y)});
+		const bool rim = fromMiddle > supportDistance2;
+		weight *= voter.bent ? bentWeight : rim ? rimWeight : 1.0;
+		(rim ? rimSum : sum) += weight;
+		votes.push_back({std::abs(r), weight, -r * voter.surface.normal(local.x, local.y), rim});
 	}
+	if (votes.empty())
+		return;
+	if (rimSum > sum && !hasCompany(i, spacing / nearness))
+		rimSum = 0.0;
+	if (rimSum <= sum)
+		votes.erase(std::remove_if(votes.begin(), votes.end(), [](const Vote& v) { return v.rim; }), votes.end());
+	else
+		sum += rimSum;
 	m_votes[i] = static_cast<Index>(votes.size());
 	if (votes.empty())
 		return;

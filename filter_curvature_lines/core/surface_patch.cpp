@@ -21,6 +21,8 @@ constexpr int    triples          = 24;
 constexpr int    planeSample      = 48;  // points that judge a plane
 constexpr double planeCutoff      = 2.5; // robust deviations
 constexpr double consistent       = 1.4826; // median |r| of a normal distribution to its deviation
+constexpr double minority         = 0.35;   // of the points may be all that lie on one surface
+constexpr double minorityDeviations = 2.2036; // the same for this quantile
 constexpr double downweighting    = 1.5;
 constexpr double cutoff           = 4.5;
 constexpr int    firstIterations  = 5;
@@ -44,9 +46,9 @@ auto leveragePolynomial(const Matrix& inverse)
 	return c;
 }
 
-double medianOf(std::vector<double>& values, int n)
+double quantileOf(std::vector<double>& values, int n, double share)
 {
-	const auto middle = values.begin() + n / 2;
+	const auto middle = values.begin() + static_cast<int>(share * n);
 	std::nth_element(values.begin(), middle, values.begin() + n);
 	return *middle;
 }
@@ -92,7 +94,7 @@ Plane medianPlane(
 		for (int k = 0; k < judges; ++k)
 			distance[k] =
 				std::abs(plane.normal.dot(points.col(k * n / judges)) - plane.offset);
-		plane.deviation = medianOf(distance, judges);
+		plane.deviation = minorityDeviations * quantileOf(distance, judges, minority);
 		if (best.deviation < 0.0 || plane.deviation < best.deviation)
 			best = plane;
 	}
@@ -107,7 +109,7 @@ int frameFromPlane(
 	double                  minScale,
 	std::vector<double>&    inPlane)
 {
-	const double reach = planeCutoff * std::max(consistent * plane.deviation, minScale);
+	const double reach = planeCutoff * std::max(plane.deviation, minScale);
 	Vector3d     sum   = Vector3d::Zero();
 	int          count = 0;
 	inPlane.resize(std::max<std::size_t>(inPlane.size(), points.cols()));
@@ -152,9 +154,15 @@ bool reweightedStep(SurfacePatch& patch, double minScale, RobustPatchScratch& sc
 	const int n        = samples.size();
 	patch.coefficients = fit.coefficients;
 	patchResiduals(patch, samples, scratch.residuals);
-	for (int k = 0; k < n; ++k)
-		scratch.absolute[k] = std::abs(scratch.residuals[k]);
-	patch.scale = std::max(consistent * medianOf(scratch.absolute, n), minScale);
+	const bool   first = patch.scale <= 0.0;
+	const double limit0 = first ? 1e300 : cutoff * patch.scale;
+	int m=0;
+	for (int k = 0; k < n; ++k) {
+		const double r = std::abs(scratch.residuals[k]);
+		if (r < limit0) scratch.absolute[m++] = r;
+	}
+	if (m < SurfacePatch::Fit::count) return false;
+	patch.scale = std::max(first ? minorityDeviations * quantileOf(scratch.absolute, m, minority) : consistent * quantileOf(scratch.absolute, m, .5), minScale);
 	const double unit  = 1.0 / (downweighting * patch.scale);
 	const double limit = (cutoff / downweighting) * (cutoff / downweighting);
 	for (int k = 0; k < n; ++k) {

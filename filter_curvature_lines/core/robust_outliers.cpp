@@ -33,6 +33,7 @@ constexpr Index  mostSearched     = 4;
 constexpr double lostDeviation    = 9.5;
 constexpr double surfaceNoises    = 7.0;  // radius of a voter in noise units, at least
 constexpr double neighborGrowth   = 1.2;
+constexpr double predictionVariance = 6.0; // of a voter of n points, times n over the variance
 constexpr double minMajority      = 0.35;
 constexpr double supportDistance2 = 4.5; // squared Mahalanobis distance; 4 is the rim of a uniform disk
 constexpr double rimDistance2     = 9.0; // a corner of a quarter of a disk is at 7.4
@@ -47,6 +48,7 @@ constexpr int    meanShifts       = 4;
 constexpr double isolatedShare    = 0.08; // of the usual number of votes
 constexpr double hysteresisShare  = 1.8 / 3.5;
 constexpr int    hysteresisPasses = 3;
+constexpr double together         = 2.0; // sensitivities, for the mean of a group by its error
 constexpr Index  hysteresisPeers  = 8;
 constexpr Index  minFlaggedPeers  = 3;
 constexpr double flaggedPeerShare = 0.4;
@@ -106,6 +108,7 @@ private:
 
 	std::vector<char>   m_rejected, m_flagged;
 	std::vector<double> m_deviation; // noise units
+	Matrix3Xd m_displacement;
 	std::vector<double> m_crowd; // distance of the 6th neighbour
 	std::vector<double> m_against, m_noise, m_spacing;
 	std::vector<Index>  m_votes;
@@ -129,6 +132,7 @@ RobustVote::RobustVote(const Matrix3Xd& positions, double sensitivity) :
 {
 	for (Index k = 0; k < size(); ++k)
 		m_rank[m_order[k]] = k;
+	m_displacement.setZero(3, size());
 	m_crowd.resize(size());
 	parallelFor(size(), {}, [&](Index i) {
 		const auto near = m_search.nearest(m_positions.col(i), crowdSize + 1);
@@ -315,7 +319,7 @@ void RobustVote::judge(Index i)
 		const double centred =
 			1.0 - 0.9 * (p - m_positions.col(voter.centre)).squaredNorm() / (radius * radius);
 		double weight = centred * centred;
-		noise += weight * voter.noise;
+		noise += weight * voter.noise * std::sqrt(1.0 + predictionVariance / voter.neighbors);
 		spacing += weight * voter.spacing;
 		nearness += weight;
 		const bool rim = fromMiddle > supportDistance2;
@@ -366,6 +370,7 @@ void RobustVote::judge(Index i)
 			break;
 		toSurface = mean / weight;
 	}
+	m_displacement.col(i) = toSurface;
 	m_deviation[i] = toSurface.norm() / noise;
 	m_against[i]   = std::clamp(1.0 - for_ / sum, 0.0, 1.0);
 }
@@ -384,6 +389,15 @@ void RobustVote::followClusters(const Progress& progress)
 			if (j != i && (m_positions.col(j) - m_positions.col(i)).norm() < m_spacing[i])
 				peers[d].push_back(j);
 	});
+	for (std::size_t d = 0; d < doubtful.size(); ++d) {
+		const Index i   = doubtful[d];
+		Vector3d    sum = m_displacement.col(i);
+		for (const Index j : peers[d])
+			sum += m_displacement.col(j);
+		const double n = peers[d].size() + 1.0;
+		if (sum.dot(m_displacement.col(i)) > together * m_sensitivity * m_noise[i] * std::sqrt(n) * m_displacement.col(i).norm())
+			m_flagged[i] = 1;
+	}
 	for (int pass = 0; pass < hysteresisPasses; ++pass) {
 		const std::vector<char> before = m_flagged;
 		for (std::size_t d = 0; d < doubtful.size(); ++d) {

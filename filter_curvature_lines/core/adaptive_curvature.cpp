@@ -17,6 +17,7 @@ constexpr Index  gateNeighbors = 60;
 constexpr double minAgreement  = 0.25;
 constexpr Index  fitCap        = 256;
 constexpr double blendRadius   = 0.5;  // of the height radius
+constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
 
 // Normals that tell the side of the surface and no more: the mean of the given ones around, of those that
 // agree with the point's own, unless nearly all oppose it.
@@ -62,26 +63,32 @@ public:
 		double                                       directBelow) :
 			m_scale(scale), m_subsets(sample, scale.height.radius, fitCap),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
-			m_anchors(sample, m_subsets, scale.height, Zone{&m_userSearch, 1.05 * scale.radius()}),
+			m_anchors(sample, m_subsets, scale, Zone{&m_userSearch, 1.05 * scale.radius()}),
 			m_direct(scale.normalRadius == 0.0 || scale.height.radius < directBelow),
 			m_search(m_anchors.origins())
 	{
-		if (m_direct)
+		if (m_direct && !m_anchors.hasEdges())
 			return;
-		m_elements.resize(m_anchors.size());
+		m_elements = m_anchors.elements();
+		if (scale.normalRadius == 0.0)
+			return;
 		parallelFor(m_anchors.size(), {}, [&](Index a) {
 			if (Zone{&m_userSearch, blendRadius * m_scale.height.radius}.contains(m_anchors.origins().col(a)))
-				m_elements[a] = m_anchors.normalField(m_anchors.elements()[a], scale.normalRadius);
+				m_elements[a] = m_anchors.normalField(m_anchors.elements()[a]);
 		});
 	}
 
 	SurfaceElement at(Index place, const Eigen::Vector3d& position, const Eigen::Vector3d& gate) const
 	{
-		if (m_direct) {
-			SurfaceElement e = surfaceAt(m_subsets, place, position, gate, m_scale.height, 2);
-			return e.valid && m_scale.normalRadius > 0.0 ? m_anchors.normalField(e, m_scale.normalRadius) : e;
+		if (m_anchors.nearEdge(position)) {
+			const SurfaceElement face = m_anchors.faceAt(position);
+			return face.valid ? interpolate(position, face.normal, m_anchors.jump()) : face;
 		}
-		return interpolate(position, gate);
+		if (m_direct) {
+			const SurfaceElement e = surfaceAt(m_subsets, place, position, gate, m_scale.height, 2);
+			return e.valid && m_scale.normalRadius > 0.0 ? m_anchors.normalField(e) : e;
+		}
+		return interpolate(position, gate, oppositeNormals);
 	}
 
 private:
@@ -101,7 +108,7 @@ private:
 		return mean / total;
 	}
 
-	SurfaceElement interpolate(const Eigen::Vector3d& position, const Eigen::Vector3d& gate) const
+	SurfaceElement interpolate(const Eigen::Vector3d& position, const Eigen::Vector3d& gate, double jump) const
 	{
 		thread_local std::vector<Index> near;
 		thread_local LocalSamples<10>   samples;
@@ -114,7 +121,7 @@ private:
 			samples.reserve(near.size());
 			for (const Index a : near) {
 				const SurfaceElement& e = m_elements[a];
-				if (!e.valid || e.normal.dot(normal) < 0.2)
+				if (!e.valid || (e.normal - normal).norm() > jump)
 					continue;
 				const Eigen::Vector3d d = (m_anchors.origins().col(a) - position) / radius;
 				Eigen::Matrix<double, 10, 1> y;

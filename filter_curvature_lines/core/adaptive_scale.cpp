@@ -55,19 +55,18 @@ struct Trial {
 };
 
 std::vector<ProbeEstimate> estimateProbes(
-	const PointSubsets&          subsets,
-	const SurfaceAnchors*        anchors,
+	const SurfaceAnchors*              anchors,
 	const std::vector<SurfaceElement>& starts,
-	const CurvatureScale&        scale)
+	const Eigen::Matrix3Xd&            positions,
+	const CurvatureScale&              scale)
 {
-	(void) subsets;
 	std::vector<ProbeEstimate> estimates(starts.size());
 	parallelFor(static_cast<Index>(starts.size()), {}, [&](Index p) {
 		SurfaceElement element = starts[p];
 		if (!element.valid)
 			return;
 		if (anchors)
-			element = anchors->normalField(element, scale.normalRadius);
+			element = anchors->normalField(anchors->onFace(element, positions.col(p)));
 		estimates[p] = {
 			element.shape, element.residual / scale.height.radius, element.offset, element.valid};
 	});
@@ -275,7 +274,6 @@ ScaleSelection selectScales(
 		for (int h = 0; h < 2; ++h) {
 			const PointSubsets subsets(*halves[h], radius, fitCap);
 			std::array<std::vector<SurfaceElement>, 5>            starts;  // by degree
-			std::array<std::unique_ptr<const SurfaceAnchors>, 5> anchors;
 			for (Trial& trial : here) {
 				const HeightScale& height = trial.scale.height;
 				auto&              at     = starts[height.degree];
@@ -291,11 +289,12 @@ ScaleSelection selectScales(
 							probeIterations);
 					});
 				}
-				auto& field = anchors[height.degree];
-				if (trial.scale.normalRadius > 0.0 && !field)
-					field = std::make_unique<const SurfaceAnchors>(*halves[h], subsets, height);
-				trial.halves[h] = estimateProbes(
-					subsets, trial.scale.normalRadius > 0.0 ? field.get() : nullptr, at, trial.scale);
+				std::unique_ptr<const SurfaceAnchors> anchors;
+				if (trial.scale.normalRadius > 0.0)
+					anchors =
+						std::make_unique<const SurfaceAnchors>(*halves[h], subsets, trial.scale);
+				trial.halves[h] =
+					estimateProbes(anchors.get(), at, selection.positions, trial.scale);
 			}
 		}
 		trials.insert(trials.end(), here.begin(), here.end());

@@ -8,17 +8,6 @@
 
 namespace curvature_lines {
 
-// How to estimate the shape operator: a height polynomial at radius height.radius, then, unless
-// normalRadius is 0, a cubic polynomial of the normals of anchors within normalRadius.
-struct CurvatureScale {
-	HeightScale height;
-	double      normalRadius = 0.0; // length
-	int         family       = 0;   // scales of one family differ in size only
-	int         level        = 0;
-
-	double radius() const { return std::max(height.radius, normalRadius); }
-};
-
 struct AdaptiveScaleOptions {
 	Index minProbes = 512; // places where scales are compared: one in 20 points within these bounds
 	Index maxProbes = 2048;

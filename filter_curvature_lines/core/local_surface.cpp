@@ -11,7 +11,6 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr int normalDegree = 3;
 // Fits need a few samples more than coefficients.
 constexpr int spareSamples = 3;
 
@@ -173,54 +172,62 @@ SurfaceElement LocalSurfaceFitter::fitHeights(
 	return element;
 }
 
+template<int Degree>
+bool LocalSurfaceFitter::normalStep(
+	const std::vector<SurfaceElement>& elements,
+	const std::vector<Index>&          near,
+	const Eigen::Vector3d&             center,
+	double                             radius,
+	SurfaceElement&                    element)
+{
+	const TangentFrame frame(element.normal);
+	const double       scale = 1.0 / radius;
+	m_normals.reserve(near.size());
+	for (const Index k : near) {
+		const SurfaceElement& other = elements[k];
+		const double          along = other.normal.dot(frame.n);
+		const Eigen::Vector3d d     = (other.position - center) * scale;
+		const double          w     = ballKernel(d.squaredNorm());
+		if (along < 0.0 || w <= 0.0)
+			continue;
+		m_normals.add(
+			d.dot(frame.u),
+			d.dot(frame.v),
+			w,
+			{other.normal.dot(frame.u), other.normal.dot(frame.v), along});
+	}
+	if (m_normals.size() < monomialCount(Degree) + spareSamples)
+		return false;
+	const auto fit = fitPolynomial<Degree, 3>(m_normals);
+	if (!fit.valid)
+		return false;
+	const auto&     c = fit.coefficients;
+	Eigen::Matrix2d x;
+	x << c(1, 0), c(2, 0), c(1, 1), c(2, 1);
+	const Eigen::Matrix2d       s = 0.5 * scale * (x + x.transpose());
+	Eigen::Matrix<double, 3, 2> tangents;
+	tangents << frame.u, frame.v;
+	const Eigen::Vector3d mean = c(0, 0) * frame.u + c(0, 1) * frame.v + c(0, 2) * frame.n;
+	if (!(mean.norm() > 0.0))
+		return false;
+	element.normal = mean.normalized();
+	element.shape  = tangents * s * tangents.transpose();
+	return true;
+}
+
 SurfaceElement LocalSurfaceFitter::fitNormals(
 	const std::vector<SurfaceElement>& elements,
 	const std::vector<Index>&          near,
 	const SurfaceElement&              start,
-	double                             radius)
+	double                             radius,
+	int                                degree)
 {
 	SurfaceElement element = start;
-	element.valid          = false;
-	const double scale     = 1.0 / radius;
-	m_robust.assign(near.size(), 1.0);
-	for (int it = 0; it < 2; ++it) {
-		const TangentFrame frame(element.normal);
-		m_normals.reserve(near.size());
-		m_entries.clear();
-		for (Index k = 0; k < static_cast<Index>(near.size()); ++k) {
-			const SurfaceElement& other = elements[near[k]];
-			const double          along = other.normal.dot(frame.n);
-			if (along < 0.0)
-				continue;
-			const Eigen::Vector3d d = (other.position - start.position) * scale;
-			const double          w = ballKernel(d.squaredNorm()) * m_robust[k];
-			if (w <= 0.0)
-				continue;
-			m_normals.add(
-				d.dot(frame.u),
-				d.dot(frame.v),
-				w,
-				{other.normal.dot(frame.u), other.normal.dot(frame.v), along});
-			m_entries.push_back(k);
-		}
-		if (m_normals.size() < monomialCount(normalDegree) + spareSamples)
-			return element;
-		auto fit = fitPolynomial<normalDegree, 3>(m_normals);
-		if (!fit.valid)
-			return element;
-		const auto&           c = fit.coefficients;
-		Eigen::Matrix2d       x;
-		x << c(1, 0), c(2, 0), c(1, 1), c(2, 1);
-		const Eigen::Matrix2d             s = 0.5 * scale * (x + x.transpose());
-		Eigen::Matrix<double, 3, 2> tangents;
-		tangents << frame.u, frame.v;
-		const Eigen::Vector3d mean = c(0, 0) * frame.u + c(0, 1) * frame.v + c(0, 2) * frame.n;
-		if (!(mean.norm() > 0.0))
-			return element;
-		element.normal = mean.normalized();
-		element.shape  = tangents * s * tangents.transpose();
-	}
-	element.valid = true;
+	element.valid          = true;
+	for (int it = 0; it < 2 && element.valid; ++it)
+		element.valid = degree == 1 ? normalStep<1>(elements, near, start.position, radius, element) :
+						degree == 2 ? normalStep<2>(elements, near, start.position, radius, element) :
+									  normalStep<3>(elements, near, start.position, radius, element);
 	return element;
 }
 

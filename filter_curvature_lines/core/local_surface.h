@@ -42,23 +42,31 @@ public:
 		int                       degree,
 		int                       iterations);
 
-	// The normals of the elements `near` `start` (all within `radius`) as a cubic polynomial in its tangent
-	// plane; its linear part is the shape operator. residual and offset are those of `start`.
+	// The normals of the elements `near` `start` (all within `radius`) as a polynomial of `degree` 1 to 3
+	// in its tangent plane; its linear part is the shape operator. residual and offset are those of `start`.
 	SurfaceElement fitNormals(
 		const std::vector<SurfaceElement>& elements,
 		const std::vector<Index>&          near,
 		const SurfaceElement&              start,
-		double                             radius);
+		double                             radius,
+		int                                degree = 3);
 
 	static LocalSurfaceFitter& ofThisThread();
 
 private:
 	template<int Degree>
+	bool normalStep(
+		const std::vector<SurfaceElement>& elements,
+		const std::vector<Index>&          near,
+		const Eigen::Vector3d&             center,
+		double                             radius,
+		SurfaceElement&                    element);
+	template<int Degree>
 	bool heightStep(
 		const PointCloud&         cloud,
 		const std::vector<Index>& near,
 		double                    radius,
-		bool                      keepRobustWeights,
+		bool                      lookForOutliers,
 		SurfaceElement&           element);
 	bool planeStart(
 		const PointCloud&         cloud,

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 namespace curvature_lines {
 
@@ -13,6 +16,16 @@ constexpr double anchorSpacing   = 0.18; // in radii
 constexpr int    anchorIterations = 2;
 constexpr Index  countedBalls    = 40;
 constexpr Index  maxSubsets      = 64;
+
+// Residuals this many times that of a good fit, plus this many radii, do not come from noise.
+constexpr double misfitRatio  = 1.15;
+constexpr double misfitFloor  = 0.004;
+constexpr double maxMisfits   = 0.75; // share of the anchors; more, and it is the scale that does not fit
+constexpr double minAgreement = 0.35; // share of the anchors within half a radius
+constexpr Index  minAnchors   = 30;
+constexpr double linkLength   = 2.0 * anchorSpacing; // radii
+constexpr double faceReach    = 1.5;                 // radii
+constexpr double smallestJump = 0.35;
 
 PointCloud block(const PointCloud& cloud, Index from, Index to)
 {
@@ -92,28 +105,43 @@ bool Zone::contains(const Eigen::Vector3d& position) const
 }
 
 SurfaceAnchors::SurfaceAnchors(
-	const PointSample&  sample,
-	const PointSubsets& subsets,
-	const HeightScale&  scale,
-	const Zone&         zone,
-	const Progress&     progress)
+	const PointSample&    sample,
+	const PointSubsets&   subsets,
+	const CurvatureScale& scale,
+	const Zone&           zone,
+	const Progress&       progress) : m_scale(scale)
 {
-	const std::vector<Index>    kept = thin(sample, anchorSpacing * scale.radius);
+	fitAll(sample, subsets, zone, progress);
+	m_originSearch = std::make_unique<NeighborSearch>(m_origins);
+	flagMisfits();
+	if (m_hasEdges) {
+		link();
+		continueFaces();
+	}
+	if (m_hasEdges)
+		cutLinks();
+	m_search = std::make_unique<NeighborSearch>(m_positions);
+}
+
+void SurfaceAnchors::fitAll(
+	const PointSample& sample, const PointSubsets& subsets, const Zone& zone, const Progress& progress)
+{
+	const std::vector<Index>    kept = thin(sample, anchorSpacing * m_scale.height.radius);
 	std::vector<SurfaceElement> elements(kept.size());
 	parallelFor(static_cast<Index>(kept.size()), progress, [&](Index a) {
-		if (!zone.contains(sample.cloud.positions.col(kept[a])))
-			return;
-		elements[a] = surfaceAt(
-			subsets,
-			a,
-			sample.cloud.positions.col(kept[a]),
-			sample.cloud.normals.col(kept[a]),
-			scale,
-			anchorIterations);
+		const Eigen::Vector3d position = sample.cloud.positions.col(kept[a]);
+		if (zone.contains(position))
+			elements[a] = surfaceAt(
+				subsets,
+				a,
+				position,
+				sample.cloud.normals.col(kept[a]),
+				m_scale.height,
+				anchorIterations);
 	});
-	for (std::size_t a = 0; a < kept.size(); ++a)
-		if (elements[a].valid)
-			m_elements.push_back(elements[a]);
+	for (const SurfaceElement& element : elements)
+		if (element.valid)
+			m_elements.push_back(element);
 	m_origins.resize(3, m_elements.size());
 	m_positions.resize(3, m_elements.size());
 	for (std::size_t a = 0, valid = 0; a < kept.size(); ++a)
@@ -122,14 +150,272 @@ SurfaceAnchors::SurfaceAnchors(
 			m_positions.col(valid) = elements[a].position;
 			++valid;
 		}
-	m_search = std::make_unique<NeighborSearch>(m_positions);
 }
 
-SurfaceElement SurfaceAnchors::normalField(const SurfaceElement& start, double radius) const
+void SurfaceAnchors::flagMisfits()
 {
+	const Index n = size();
+	m_misfit.assign(n, 0);
+	if (n < minAnchors)
+		return;
+	std::vector<double> residuals;
+	for (const SurfaceElement& element : m_elements)
+		residuals.push_back(element.residual);
+	std::nth_element(residuals.begin(), residuals.begin() + n / 3, residuals.end());
+	m_noise                = residuals[n / 3];
+	const double threshold = misfitRatio * m_noise + misfitFloor * m_scale.height.radius;
+	std::vector<char> high(n);
+	Index             count = 0;
+	for (Index a = 0; a < n; ++a)
+		count += high[a] = m_elements[a].residual > threshold;
+	if (count > maxMisfits * n)
+		return;
+	// An edge passes through the balls of many neighbours, chance through that of one.
+	std::vector<Index> near;
+	for (Index a = 0; a < n; ++a) {
+		if (!high[a])
+			continue;
+		m_originSearch->within(m_origins.col(a), 0.5 * m_scale.height.radius, near);
+		const auto agree = std::count_if(near.begin(), near.end(), [&](Index b) { return high[b]; });
+		if (agree >= 3 && agree >= minAgreement * near.size()) {
+			m_misfit[a] = 1;
+			m_hasEdges  = true;
+		}
+	}
+}
+
+void SurfaceAnchors::link()
+{
+	std::vector<std::vector<Index>> rows(size());
+	parallelFor(size(), {}, [&](Index a) {
+		m_originSearch->within(m_origins.col(a), linkLength * m_scale.height.radius, rows[a]);
+		rows[a].erase(std::remove(rows[a].begin(), rows[a].end(), a), rows[a].end());
+	});
+	m_links = NeighborLists::fromRows(rows);
+	std::vector<double> jumps;
+	for (Index a = 0; a < size(); ++a)
+		for (const Index b : m_links[a])
+			if (a < b && !m_misfit[a] && !m_misfit[b])
+				jumps.push_back((m_elements[a].normal - m_elements[b].normal).norm());
+	if (jumps.empty())
+		return;
+	std::nth_element(jumps.begin(), jumps.begin() + jumps.size() / 2, jumps.end());
+	m_jump = std::max(smallestJump, 4.0 * jumps[jumps.size() / 2]);
+}
+
+// Before misfits have a face of their own, they separate the faces: links to them do not count.
+void SurfaceAnchors::continueFaces()
+{
+	const double reach = faceReach * m_scale.height.radius;
+	m_search           = std::make_unique<NeighborSearch>(m_positions);
+	m_atCut            = m_misfit;
+	Eigen::Matrix3Xd misfits(3, std::count(m_misfit.begin(), m_misfit.end(), 1));
+	for (Index a = 0, k = 0; a < size(); ++a)
+		if (m_misfit[a])
+			misfits.col(k++) = m_origins.col(a);
+	const NeighborSearch misfitSearch(misfits);
+	m_faces.resize(size());
+	parallelFor(size(), {}, [&](Index a) {
+		if (m_misfit[a] || !misfitSearch.anyWithin(m_origins.col(a), 2.0 * reach))
+			return;
+		m_faces[a] = m_scale.normalRadius > 0.0 ? normalField(m_elements[a]) : m_elements[a];
+	});
+	std::vector<SurfaceElement> continued(size());
+	parallelFor(size(), {}, [&](Index a) {
+		EdgeNearby edge;
+		if (!m_misfit[a])
+			return;
+		const SurfaceElement face  = faceAt(m_origins.col(a), &edge);
+		const double         height = (face.position - m_origins.col(a)).norm();
+		if (edge.angle > 0.0 && height < 3.0 * m_noise + misfitFloor * m_scale.height.radius)
+			continued[a] = face;
+	});
+	m_hasEdges = false;
+	for (Index a = 0; a < size(); ++a)
+		if (continued[a].valid) {
+			m_elements[a]      = continued[a];
+			m_positions.col(a) = continued[a].position;
+			m_hasEdges         = true;
+		}
+}
+
+void SurfaceAnchors::cutLinks()
+{
+	std::vector<std::vector<Index>> rows(size());
+	m_atCut.assign(size(), 0);
+	for (Index a = 0; a < size(); ++a)
+		for (const Index b : m_links[a]) {
+			if ((m_elements[a].normal - m_elements[b].normal).norm() < m_jump)
+				rows[a].push_back(b);
+			else
+				m_atCut[a] = 1;
+		}
+	m_links = NeighborLists::fromRows(rows);
+	std::fill(m_misfit.begin(), m_misfit.end(), 0);
+}
+
+bool SurfaceAnchors::nearEdge(const Eigen::Vector3d& position) const
+{
+	if (!m_hasEdges)
+		return false;
 	std::vector<Index>& near = scratchList();
-	m_search->within(start.position, radius, near);
-	return LocalSurfaceFitter::ofThisThread().fitNormals(m_elements, near, start, radius);
+	m_originSearch->within(position, m_scale.height.radius, near);
+	return std::any_of(near.begin(), near.end(), [&](Index a) { return m_atCut[a]; });
+}
+
+std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vector3d& position) const
+{
+	const double        reach = faceReach * m_scale.height.radius;
+	std::vector<Index>& near  = scratchList();
+	m_originSearch->within(position, reach, near);
+	std::vector<std::pair<double, Index>> ordered;
+	for (const Index a : near)
+		if (m_faces[a].valid)
+			ordered.emplace_back((m_origins.col(a) - position).squaredNorm(), a);
+	std::sort(ordered.begin(), ordered.end());
+	std::vector<Face> faces;
+	for (const auto& [squared, a] : ordered) {
+		const SurfaceElement& e = m_faces[a];
+		// The surface as a quadric around the anchor, continued to the point.
+		const Eigen::Vector3d d      = position - e.position;
+		const Eigen::Vector3d turn   = e.shape * d;
+		const Eigen::Vector3d normal = (e.normal + turn).normalized();
+		const double          weight = ballKernel(squared / (reach * reach)) + 1e-6;
+		auto face = std::find_if(faces.begin(), faces.end(), [&](const Face& f) {
+			return (f.normal.normalized() - normal).norm() < m_jump;
+		});
+		if (face == faces.end())
+			face = faces.emplace(faces.end());
+		face->normal += weight * normal;
+		face->shape += weight * e.shape;
+		face->center += weight * e.position;
+		face->height += weight * (d.dot(e.normal) + 0.5 * d.dot(turn));
+		face->weight += weight;
+		++face->members;
+	}
+	faces.erase(
+		std::remove_if(faces.begin(), faces.end(), [](const Face& f) { return f.members < 3; }),
+		faces.end());
+	for (Face& face : faces) {
+		face.height /= face.weight;
+		face.shape /= face.weight;
+		face.center /= face.weight;
+		face.normal.normalize();
+	}
+	return faces;
+}
+
+// Faces end where they meet: the foot point of a point on either side of the surface lies, at a convex
+// edge, on the face it is highest above, at a concave one on the face it is lowest above.
+void SurfaceAnchors::sortByNearness(std::vector<Face>& faces)
+{
+	bool convex = true, concave = true;
+	for (const Face& a : faces)
+		for (const Face& b : faces)
+			if (&a != &b) {
+				const double side = (b.center - a.center).dot(a.normal);
+				convex            = convex && side < 0.0;
+				concave           = concave && side > 0.0;
+			}
+	const auto distance = [&](const Face& face) {
+		return convex ? -face.height : concave ? face.height : std::abs(face.height);
+	};
+	std::stable_sort(faces.begin(), faces.end(), [&](const Face& a, const Face& b) {
+		return distance(a) < distance(b);
+	});
+}
+
+SurfaceElement SurfaceAnchors::faceAt(const Eigen::Vector3d& position, EdgeNearby* edge) const
+{
+	std::vector<Face> faces = facesAround(position);
+	SurfaceElement    result;
+	if (faces.empty())
+		return result;
+	sortByNearness(faces);
+	const Face& own = faces.front();
+	result.normal   = own.normal;
+	result.position = position - own.height * own.normal;
+	result.shape    = own.shape;
+	result.residual = m_noise;
+	result.valid    = true;
+	if (edge && faces.size() > 1) {
+		const Face&           other  = faces[1];
+		const Eigen::Vector3d along  = own.normal.cross(other.normal);
+		const double          cosine = own.normal.dot(other.normal);
+		const double          sine   = std::max(along.norm(), 1e-9);
+		// From the foot point on the own plane to the other plane, within the own one.
+		const double below = other.height - own.height * cosine;
+		edge->angle        = std::atan2(sine, cosine);
+		edge->distance     = std::abs(below) / sine;
+		edge->direction    = along / sine;
+		edge->position =
+			result.position - below / (sine * sine) * (other.normal - cosine * own.normal);
+	}
+	return result;
+}
+
+SurfaceElement
+SurfaceAnchors::onFace(const SurfaceElement& element, const Eigen::Vector3d& position) const
+{
+	if (!m_hasEdges || !nearEdge(position))
+		return element;
+	const SurfaceElement face = faceAt(position);
+	if (!face.valid)
+		return element;
+	SurfaceElement result = face;
+	result.residual       = element.residual;
+	result.offset         = element.offset;
+	return result;
+}
+
+void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Index>& near) const
+{
+	const double unit    = 1.0 / (m_scale.height.radius * m_scale.height.radius);
+	Index        seed    = -1;
+	double       closest = std::numeric_limits<double>::infinity();
+	thread_local std::vector<char> inBall;
+	inBall.resize(std::max<std::size_t>(inBall.size(), size()), 0);
+	for (const Index a : near) {
+		if (m_misfit[a])
+			continue;
+		inBall[a] = 1;
+		const double distance = unit * (m_elements[a].position - start.position).squaredNorm() +
+			4.0 * (m_elements[a].normal - start.normal).squaredNorm();
+		if (distance < closest) {
+			closest = distance;
+			seed    = a;
+		}
+	}
+	std::vector<Index> reached;
+	if (seed >= 0) {
+		reached.push_back(seed);
+		inBall[seed] = 0;
+	}
+	for (std::size_t k = 0; k < reached.size(); ++k)
+		for (const Index b : m_links[reached[k]])
+			if (inBall[b] && (m_elements[b].normal - m_elements[reached[k]].normal).norm() < m_jump) {
+				inBall[b] = 0;
+				reached.push_back(b);
+			}
+	for (const Index a : near)
+		inBall[a] = 0;
+	near.swap(reached);
+}
+
+SurfaceElement SurfaceAnchors::normalField(const SurfaceElement& start) const
+{
+	thread_local std::vector<Index> near;
+	m_search->within(start.position, m_scale.normalRadius, near);
+	int degree = 3;
+	if (m_hasEdges && std::any_of(near.begin(), near.end(), [&](Index a) { return m_atCut[a]; })) {
+		const std::size_t all = near.size();
+		keepConnected(start, near);
+		// A cubic through one side of a ball says little about the other.
+		if (near.size() < 0.75 * all)
+			degree = near.size() < 0.35 * all ? 1 : 2;
+	}
+	return LocalSurfaceFitter::ofThisThread().fitNormals(
+		m_elements, near, start, m_scale.normalRadius, degree);
 }
 
 } // namespace curvature_lines

@@ -59,26 +59,89 @@ struct Zone {
 	bool contains(const Eigen::Vector3d& position) const;
 };
 
+// How to estimate the shape operator: a height polynomial at radius height.radius, then, unless
+// normalRadius is 0, a cubic polynomial of the normals of anchors within normalRadius.
+struct CurvatureScale {
+	HeightScale height;
+	double      normalRadius = 0.0; // length
+	int         family       = 0;   // scales of one family differ in size only
+	int         level        = 0;
+
+	double radius() const { return std::max(height.radius, normalRadius); }
+};
+
+// A place where two faces meet, seen from a point on one of them.
+struct EdgeNearby {
+	double          angle    = 0.0; // between the faces' normals, 0: no edge
+	double          distance = 0.0; // of the point from the edge, length
+	Eigen::Vector3d position = Eigen::Vector3d::Zero(); // on the edge, nearest to the point
+	Eigen::Vector3d direction = Eigen::Vector3d::Zero(); // along the edge, unit
+};
+
+// The anchors of one scale. Where a height polynomial does not fit although it does elsewhere, a sharp edge
+// runs through its ball: the anchor then takes the surface of the face it lies nearest to, continued from
+// anchors whose balls hold one face only, and normals are never fitted across.
 class SurfaceAnchors {
 public:
 	SurfaceAnchors(
-		const PointSample&  sample,
-		const PointSubsets& subsets,
-		const HeightScale&  scale,
-		const Zone&         zone     = {},
-		const Progress&     progress = {});
+		const PointSample&    sample,
+		const PointSubsets&   subsets,
+		const CurvatureScale& scale,
+		const Zone&           zone     = {},
+		const Progress&       progress = {});
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
 	const std::vector<SurfaceElement>& elements() const { return m_elements; }
 	const Eigen::Matrix3Xd&            origins() const { return m_origins; }
+	bool                               hasEdges() const { return m_hasEdges; }
+	// Normals further apart than this (length of the difference) belong to different faces.
+	double jump() const { return m_jump; }
+	// Whether an edge may run through the ball at `position`.
+	bool nearEdge(const Eigen::Vector3d& position) const;
 
-	// Second stage: `start` with the shape operator and the normal of the normal field within `radius`.
-	SurfaceElement normalField(const SurfaceElement& start, double radius) const;
+	// The face nearest to `position`; invalid where none is known. Tells the edge nearby if asked.
+	SurfaceElement faceAt(const Eigen::Vector3d& position, EdgeNearby* edge = nullptr) const;
+
+	// `element`, fitted at `position`, or the face there if the fit was spoilt by an edge.
+	SurfaceElement onFace(const SurfaceElement& element, const Eigen::Vector3d& position) const;
+
+	// Second stage: `start` with the shape operator and the normal of the normal field around.
+	SurfaceElement normalField(const SurfaceElement& start) const;
 
 private:
+	// A face of the surface, continued to a point from the anchors around it.
+	struct Face {
+		Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+		Eigen::Vector3d center = Eigen::Vector3d::Zero(); // of the anchors
+		Eigen::Matrix3d shape  = Eigen::Matrix3d::Zero();
+		double          height = 0.0; // of the point above the face
+		double          weight = 0.0;
+		int             members = 0;
+	};
+	std::vector<Face> facesAround(const Eigen::Vector3d& position) const;
+	static void       sortByNearness(std::vector<Face>& faces);
+
+	void fitAll(
+		const PointSample& sample, const PointSubsets& subsets, const Zone& zone, const Progress& progress);
+	void flagMisfits();
+	void link();
+	void continueFaces();
+	void cutLinks();
+	// Those of `near` that are reached from the best match of `start` without crossing a cut.
+	void keepConnected(const SurfaceElement& start, std::vector<Index>& near) const;
+
+	CurvatureScale                  m_scale;
 	std::vector<SurfaceElement>     m_elements;
 	Eigen::Matrix3Xd                m_origins, m_positions;
-	std::unique_ptr<NeighborSearch> m_search; // over m_positions
+	std::unique_ptr<NeighborSearch> m_search;       // over m_positions
+	std::unique_ptr<NeighborSearch> m_originSearch; // over m_origins
+	bool                            m_hasEdges = false;
+	double                          m_noise    = 0.0; // residual where one polynomial fits
+	double                          m_jump     = 0.35;
+	std::vector<char>               m_misfit;  // an edge runs through the ball
+	std::vector<char>               m_atCut;   // a link of it was cut
+	NeighborLists                   m_links;
+	std::vector<SurfaceElement>     m_faces;   // of fitting anchors near misfits: their refined surface
 };
 
 } // namespace curvature_lines

@@ -21,8 +21,8 @@ constexpr int    triples          = 24;
 constexpr int    planeSample      = 48;  // points that judge a plane
 constexpr double planeCutoff      = 2.5; // robust deviations
 constexpr double consistent       = 1.4826; // median |r| of a normal distribution to its deviation
-constexpr double minority         = 0.35;   // of the points may be all that lie on one surface
-constexpr double minorityDeviations = 2.2036; // the same for this quantile
+constexpr double minority         = 0.30;   // of the points may be all that lie on one surface
+constexpr double minorityDeviations = 2.5953; // the same for this quantile
 constexpr double downweighting    = 1.5;
 constexpr double cutoff           = 4.5;
 constexpr int    firstIterations  = 5;
@@ -214,6 +214,11 @@ double SurfacePatch::leverage(double x, double y) const
 		sum = sum * x + inner;
 	}
 	return sum;
+}
+
+double SurfacePatch::meanCurvature() const
+{
+	return -(coefficients[3] + coefficients[5]) / (radius * radius);
 }
 
 void SurfacePatch::tilt()

@@ -41,6 +41,7 @@ struct SurfacePatch {
 	double residual(const Local& p) const;
 	// phi^T A^-1 phi with A = sum W phi phi^T: the variance of the prediction, over that of one sample.
 	double leverage(double x, double y) const;
+	double meanCurvature() const; // at the origin of a frame tilted to its normal; convex positive
 	// Turns the frame to the fitted normal at the origin; the quadric has to be fitted again.
 	void tilt();
 };

@@ -1,0 +1,456 @@
+// Fits of overlapping quadrics and their blend.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "patch_blend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "surface_patch.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+using Support = BlendOptions::Support;
+
+constexpr double slabNoise         = 3.0;  // noise units that a ball reaches beyond the disk of a patch
+constexpr double minOpposing       = -0.2; // cosine; beyond it is another sheet
+constexpr double minBent           = 0.35; // cosine; arcs stay well below a quarter of a turn
+constexpr double maxGate           = 2.0;  // gate widths
+constexpr double heightCutoff      = 5.0;  // noise units
+constexpr double growth[] = {1.0 / 3.0, 0.6, 1.0, 1.0};
+constexpr double radiusRatio       = 1.25; // of overlapping patches: the spacing is smooth
+constexpr double maxPurityExcess   = 40.0;
+constexpr double minLeverage       = 1e-12;
+constexpr double minRemaining      = 0.02; // of a residual, by a point's own influence
+
+// The patch and how far its residuals fit the noise, 0..1.
+struct BlendPatch {
+	SurfacePatch surface;
+	double       purity = 1.0;
+};
+
+struct Scratch {
+	std::vector<Index>    near;
+	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
+	LocalSamples<1>       samples;
+	std::vector<double>   residuals;
+
+	static Scratch& ofThisThread()
+	{
+		thread_local Scratch scratch;
+		return scratch;
+	}
+};
+
+double supportRadius(const BlendInput& input, const BlendOptions& options, Index i)
+{
+	return options.radius * input.spacing[i];
+}
+
+double ballRadius(const BlendInput& input, double radius, Index i)
+{
+	return std::hypot(radius, slabNoise * input.noise[i]);
+}
+
+void gather(
+	const BlendInput&     input,
+	const BlendGuide&     guide,
+	const NeighborSearch& search,
+	Index                 center,
+	double                reach,
+	Scratch&              scratch)
+{
+	const Vector3d origin = guide.positions.col(center);
+	search.within(origin, reach, scratch.near);
+	scratch.height.clear();
+	scratch.place.clear();
+	scratch.normal.clear();
+	for (const Index j : scratch.near) {
+		scratch.height.push_back(input.cloud.positions.col(j) - origin);
+		scratch.place.push_back(guide.positions.col(j) - origin);
+		scratch.normal.push_back(guide.normals.col(j));
+	}
+	scratch.samples.reserve(scratch.near.size());
+}
+
+Vector3d principalNormal(const Scratch& scratch, double reach)
+{
+	Vector3d        mean = Vector3d::Zero(), orientation = Vector3d::Zero();
+	Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+	double          sum     = 0.0;
+	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+		const Vector3d& p = scratch.height[k];
+		const double    w = supportWeight(scratch.place[k].norm() / reach, 0.0);
+		sum += w;
+		mean += w * p;
+		moments += w * p * p.transpose();
+		orientation += w * scratch.normal[k];
+	}
+	moments -= mean * mean.transpose() / sum;
+	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+	axes.computeDirect(moments);
+	const Vector3d normal = axes.eigenvectors().col(0);
+	return normal.dot(orientation) < 0.0 ? Vector3d(-normal) : normal;
+}
+
+// Geman-McClure weight of a residual in units of its width.
+double gateWeight(double e2)
+{
+	return e2 < maxGate * maxGate ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
+}
+
+// Arc over chord of a circular arc that turns by an angle of this cosine.
+double arcOverChord(double cosine)
+{
+	const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+	return sine > 1e-4 ? std::atan2(sine, cosine) / sine : 1.0;
+}
+
+void addSample(Scratch& scratch, double x, double y, double z, double w)
+{
+	if (w > 0.0)
+		scratch.samples.add(x, y, w, Eigen::Matrix<double, 1, 1>(z));
+}
+
+bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
+{
+	patch.frame = TangentFrame(principalNormal(scratch, reach));
+	for (const bool last : {false, true}) {
+		scratch.samples.reserve(scratch.near.size());
+		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
+			if (scratch.normal[k].dot(patch.frame.n) > minOpposing)
+				addSample(
+					scratch,
+					p.x(),
+					p.y(),
+					scratch.height[k].dot(patch.frame.n),
+					supportWeight(p.x(), p.y()));
+		}
+		if (!fitPatch(patch, scratch.samples, scratch.residuals))
+			return false;
+		if (!last)
+			patch.tilt();
+	}
+	return true;
+}
+
+double normalGate(const SurfacePatch& patch, const Vector3d& n, double x, double y, double width)
+{
+	return gateWeight((n - patch.normal(x, y)).squaredNorm() / (width * width));
+}
+
+// Grows from the centre: the gate of each step is the normal that the step before predicts.
+bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
+{
+	const double cutoff = heightCutoff * noise;
+	for (int step = 0; step < 4; ++step) {
+		const double shrink = growth[step];
+		const bool   last   = step == 3;
+		scratch.samples.reserve(scratch.near.size());
+		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+			const Eigen::Vector2d place = patch.frame.toPlane(scratch.place[k]) / patch.radius;
+			if (place.squaredNorm() >= shrink * shrink)
+				continue;
+			const double gate =
+				normalGate(patch, scratch.normal[k], place.x(), place.y(), width);
+			if (gate <= 0.0)
+				continue;
+			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
+			const double z = scratch.height[k].dot(patch.frame.n);
+			if (shrink == 1.0 && std::abs(patch.residual({p.x(), p.y(), z})) > cutoff)
+				continue;
+			const double w = gate * supportWeight(place.x() / shrink, place.y() / shrink);
+			addSample(scratch, p.x(), p.y(), z, w);
+		}
+		const SurfacePatch before = patch;
+		if (fitPatch(patch, scratch.samples, scratch.residuals))
+			continue;
+		if (last)
+			return false;
+		patch = before;
+	}
+	return true;
+}
+
+// Where a bent patch sees a point: x and y from the guide, z from the input.
+struct Sight {
+	double x = 0.0, y = 0.0, z = 0.0;
+	bool   seen = false;
+};
+
+Sight bentSight(
+	const SurfacePatch& patch, const Vector3d& height, const Vector3d& place, const Vector3d& normal)
+{
+	const double cosine = normal.dot(patch.frame.n);
+	if (cosine < minBent)
+		return {};
+	const double          stretch = arcOverChord(cosine) / patch.radius;
+	const Eigen::Vector2d p       = patch.frame.toPlane(place);
+	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
+}
+
+bool fitBent(SurfacePatch& patch, Scratch& scratch)
+{
+	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+		const Sight s = bentSight(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
+		if (s.seen)
+			addSample(scratch, s.x, s.y, s.z, supportWeight(s.x, s.y));
+	}
+	return fitPatch(patch, scratch.samples, scratch.residuals);
+}
+
+// Patches bent over an edge leave residuals larger than the noise explains.
+double purityOf(const SurfacePatch& patch, double noise, double rate)
+{
+	if (!(noise > 0.0) || rate <= 0.0)
+		return 1.0;
+	const double ratio  = patch.scale / noise;
+	const double excess = (ratio * ratio - 1.0) / std::sqrt(2.0 / patch.effectiveCount) - 1.0;
+	return std::exp(-rate * std::clamp(excess, 0.0, maxPurityExcess));
+}
+
+BlendPatch patchAt(
+	const BlendInput&     input,
+	const BlendGuide&     guide,
+	const BlendOptions&   options,
+	const NeighborSearch& search,
+	Index                 i)
+{
+	BlendPatch    patch;
+	Scratch&      scratch = Scratch::ofThisThread();
+	const double  radius  = supportRadius(input, options, i);
+	const double  reach   = ballRadius(input, radius, i);
+	SurfacePatch& surface = patch.surface;
+	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
+	gather(input, guide, search, i, reach, scratch);
+	const bool fitted =
+		options.support == Support::Free  ? fitFree(surface, reach, scratch) :
+		options.support == Support::Gated ? fitGated(surface, input.noise[i], options.gateWidth, scratch) :
+											fitBent(surface, scratch);
+	surface.valid = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
+	patch.purity  = purityOf(surface, input.noise[i], options.purity);
+	return patch;
+}
+
+// What one patch says about one point.
+struct Prediction {
+	Vector3d normal;          // of the surface there
+	Vector3d direction;       // in which the point moves
+	double   residual  = 0.0; // along it
+	double   move      = 0.0; // against it
+	double   weight    = 0.0; // inverse variance times trust
+	double   influence = 0.0; // of the point on the prediction
+};
+
+// From where the point lies in the support, x^2 + y^2 < 1.
+void weigh(Prediction& p, double x, double y, double leverage, double gate)
+{
+	const double inside = std::max(0.0, 1.0 - x * x - y * y);
+	p.weight            = inside * inside * gate / std::max(leverage, minLeverage);
+	p.influence         = leverage * supportWeight(x, y) * gate;
+}
+
+Prediction predict(
+	const BlendPatch&   patch,
+	const BlendOptions& options,
+	const Vector3d&     position,
+	const Vector3d&     place,
+	const Vector3d&     normal)
+{
+	const SurfacePatch&   surface = patch.surface;
+	const Eigen::Vector2d at = surface.frame.toPlane(place - surface.origin) / surface.radius;
+	Prediction            p;
+	if (at.squaredNorm() >= 1.0)
+		return p;
+	const SurfacePatch::Local local = surface.toLocal(position);
+	p.direction = p.normal = surface.normal(local.x, local.y);
+	const double width     = options.gateWidth;
+	const double gate      = options.support == Support::Gated ?
+								 gateWeight((normal - p.normal).squaredNorm() / (width * width)) :
+								 double(p.normal.dot(normal) > minOpposing);
+	p.move = p.residual = surface.residual(local);
+	weigh(p, at.x(), at.y(), surface.leverage(local.x, local.y), gate);
+	return p;
+}
+
+// The point stays at its arc length and moves along the guide's normal until it has the predicted height.
+Prediction predictBent(
+	const BlendPatch& patch,
+	const Vector3d&   position,
+	const Vector3d&   place,
+	const Vector3d&   normal,
+	double            noise)
+{
+	const SurfacePatch& surface = patch.surface;
+	const Sight sight = bentSight(surface, position - surface.origin, place - surface.origin, normal);
+	Prediction  p;
+	if (!sight.seen || sight.x * sight.x + sight.y * sight.y >= 1.0)
+		return p;
+	const double cosine = normal.dot(surface.frame.n);
+	// By arc length a height changes with the sine of the slope.
+	const Eigen::Vector2d slope = surface.gradient(sight.x, sight.y);
+	p.normal    = surface.frame.n * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) -
+			   surface.frame.toSpace(slope);
+	p.direction = normal;
+	p.residual  = (sight.z - surface.height(sight.x, sight.y)) / cosine;
+	// Isotropic noise along a surface of mean curvature H leaves the points sigma^2 H outside on average.
+	p.move = p.residual + noise * noise * surface.meanCurvature();
+	weigh(p, sight.x, sight.y, surface.leverage(sight.x, sight.y), 1.0);
+	p.weight *= cosine * cosine; // of a residual's variance
+	return p;
+}
+
+double acceptance(const BlendOptions& options, double residual, double noise)
+{
+	if (options.acceptance <= 0.0 || !(noise > 0.0))
+		return 1.0;
+	const double e = residual / (options.acceptance * noise);
+	return 1.0 / ((1.0 + e * e) * (1.0 + e * e));
+}
+
+// The patches that cover the targets.
+class CoveringPatches {
+public:
+	CoveringPatches(
+		const BlendInput&         input,
+		const BlendGuide&         guide,
+		const BlendOptions&       options,
+		const std::vector<Index>& targets,
+		const Progress&           progress);
+
+	void describeResiduals(PatchBlend& blend) const;
+	void blendAt(Index i, PatchBlend& blend) const;
+
+private:
+	void findCovering(Index i, std::vector<Index>& found) const;
+
+	const BlendInput&       m_input;
+	const BlendGuide&       m_guide;
+	const BlendOptions&     m_options;
+	Eigen::Matrix3Xd        m_centers;
+	NeighborSearch          m_search; // of the centres
+	std::vector<BlendPatch> m_patches;
+};
+
+// Wide patches need fewer centres to overlap as much.
+Index centerCount(Index n, const BlendOptions& options)
+{
+	const double points = EIGEN_PI * options.radius * options.radius; // of a patch
+	return std::max<Index>(1, static_cast<Index>(n * std::min(1.0, options.overlap / points)));
+}
+
+CoveringPatches::CoveringPatches(
+	const BlendInput&         input,
+	const BlendGuide&         guide,
+	const BlendOptions&       options,
+	const std::vector<Index>& targets,
+	const Progress&           progress) :
+		m_input(input),
+		m_guide(guide),
+		m_options(options),
+		m_centers(guide.positions.leftCols(centerCount(input.cloud.size(), options))),
+		m_search(m_centers),
+		m_patches(m_centers.cols())
+{
+	std::vector<char>  used(m_patches.size(), 0);
+	std::vector<Index> found;
+	if (static_cast<Index>(targets.size()) == input.cloud.size())
+		used.assign(m_patches.size(), 1);
+	else
+		for (const Index i : targets) {
+			findCovering(i, found);
+			for (const Index j : found)
+				used[j] = 1;
+		}
+	const NeighborSearch search(guide.positions);
+	parallelFor(static_cast<Index>(m_patches.size()), progress, [&](Index j) {
+		if (used[j])
+			m_patches[j] = patchAt(input, guide, options, search, j);
+	});
+}
+
+void CoveringPatches::findCovering(Index i, std::vector<Index>& found) const
+{
+	const double radius = radiusRatio * supportRadius(m_input, m_options, i);
+	m_search.within(m_guide.positions.col(i), ballRadius(m_input, radius, i), found);
+}
+
+void CoveringPatches::describeResiduals(PatchBlend& blend) const
+{
+	for (const BlendPatch& patch : m_patches)
+		if (patch.surface.valid) {
+			blend.variance.push_back(patch.surface.scale * patch.surface.scale);
+			blend.effectiveCount.push_back(patch.surface.effectiveCount);
+		}
+}
+
+void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
+{
+	const Vector3d      position = m_input.cloud.positions.col(i);
+	const Vector3d      place = m_guide.positions.col(i), normal = m_guide.normals.col(i);
+	const double        noise = m_input.noise[i];
+	std::vector<Index>& found = Scratch::ofThisThread().near;
+	findCovering(i, found);
+	double   total = 0.0, pure = 0.0, accepted = 0.0; // weights
+	double   residual = 0.0, influence = 0.0;
+	Vector3d move = Vector3d::Zero(), direction = Vector3d::Zero();
+	for (const Index j : found) {
+		const BlendPatch& patch = m_patches[j];
+		if (!patch.surface.valid)
+			continue;
+		const Prediction p = m_options.support == Support::Bent ?
+								 predictBent(patch, position, place, normal, noise) :
+								 predict(patch, m_options, position, place, normal);
+		if (p.weight <= 0.0)
+			continue;
+		const double w = p.weight * patch.purity;
+		const double a = w * acceptance(m_options, p.residual, noise);
+		total += p.weight;
+		pure += w;
+		residual += w * p.residual;
+		influence += w * p.influence;
+		accepted += a;
+		move -= a * p.move * p.direction;
+		direction += a * p.normal;
+	}
+	if (!(accepted > 0.0))
+		return;
+	blend.positions.col(i) = position + move / accepted;
+	if (direction.norm() > 0.0)
+		blend.normals.col(i) = direction.normalized();
+	blend.residual[i] = residual / pure / std::max(1.0 - influence / pure, minRemaining);
+	blend.purity[i]   = pure / total;
+}
+
+} // namespace
+
+PatchBlend blendPatches(
+	const BlendInput&         input,
+	const BlendGuide&         guide,
+	const BlendOptions&       options,
+	const std::vector<Index>& targets,
+	const Progress&           progress)
+{
+	const Index           n = input.cloud.size();
+	const CoveringPatches patches(input, guide, options, targets, progress.sub(0.0, 0.7, ""));
+
+	PatchBlend blend;
+	blend.positions = guide.positions;
+	blend.normals   = guide.normals;
+	blend.residual.assign(n, std::numeric_limits<double>::infinity());
+	blend.purity.assign(n, 0.0);
+	patches.describeResiduals(blend);
+	parallelFor(static_cast<Index>(targets.size()), progress.sub(0.7, 1.0, ""), [&](Index t) {
+		patches.blendAt(targets[t], blend);
+	});
+	return blend;
+}
+
+} // namespace curvature_lines

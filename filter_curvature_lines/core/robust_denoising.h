@@ -1,0 +1,29 @@
+// Denoising by overlapping quadrics at a radius found from the data: the mixed projection of A09 section 4
+// alone, without the energy, and with the residual |X d - dn| of its curvature estimate as the edge gate.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "point_cloud.h"
+#include "progress.h"
+
+namespace curvature_lines {
+
+struct RobustDenoisingOptions {
+	double noise     = 0.0; // standard deviation of the positions, a length; 0: estimated
+	double radius    = 0.0; // of a patch, in local spacings; 0: by leave-one-out residuals
+	double sharpness = 0.7; // normals that deviate so far from varying linearly are across an edge
+};
+
+struct RobustDenoisingResult {
+	Eigen::Matrix3Xd positions, normals; // 3 x N
+	double noise   = 0.0; // used, a length
+	double radius  = 0.0; // used, in local spacings (median over the points)
+	double rmsMove = 0.0; // length
+};
+
+RobustDenoisingResult denoiseRobustly(
+	const PointCloud&             cloud,
+	const RobustDenoisingOptions& options  = {},
+	const Progress&               progress = {});
+
+} // namespace curvature_lines

@@ -90,12 +90,16 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 		around.emplace(
 			result.cloud, options.neighborhood, part.sub(0.0, 0.1, "Finding neighborhoods"));
 		clock.book("neighborhoods");
-		result.field = robustCurvature(
+		result.field = estimateCurvature(
 			result.cloud,
 			around->search,
 			around->minimum,
 			options.curvature,
 			part.sub(0.1, 1.0, "Estimating curvature"));
+		if (options.curvature.scaleMode == ScaleMode::Adaptive) {
+			result.cloud.normals = result.field.correctedNormals;
+			makeTangent(result.cloud.normals, result.field);
+		}
 		clock.book("curvature");
 	};
 	estimate(progress.sub(0.2, 0.35, ""));

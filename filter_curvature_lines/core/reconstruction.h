@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "curvature_estimate.h"
 #include "denoising.h"
 #include "direction_smoothing.h"
 #include "outlier_rejection.h"
@@ -16,7 +17,7 @@ struct ReconstructionOptions {
 	bool                       rejectOutliers   = true;
 	bool                       denoise          = true;
 	bool                       smoothDirections = true;
-	RobustCurvatureOptions     curvature;
+	CurvatureOptions           curvature;
 	MinimumNeighborhoodOptions neighborhood;
 	OutlierOptions             outliers;
 	DenoisingOptions           denoising;
@@ -31,7 +32,7 @@ struct ReconstructionOptions {
 struct ReconstructionResult {
 	std::vector<char>  outlier; // per input point
 	std::vector<Index> kept;    // input index of each point of `cloud`
-	PointCloud         cloud;   // cleaned
+	PointCloud         cloud;   // cleaned; with the normals of the fitted surface unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
 	UmbilicRegions     umbilics;
 	LineNetwork        lines;

@@ -46,15 +46,22 @@ std::uint64_t fingerprint(const EstimateOptions& options)
 	Fingerprint print;
 	print.add(options.neighborhood.boundaryThreshold);
 	print.add(options.neighborhood.candidates);
-	print.add(options.curvature.regionScale);
-	print.add(options.curvature.maxIterations);
-	print.add(options.curvature.tolerance);
-	print.add(options.curvature.sigmaFactor);
-	print.add(options.curvature.cut);
-	print.add(options.curvature.featureGate);
-	print.add(options.curvature.robust);
-	print.add(options.curvature.maxPoints);
-	print.add(options.curvature.maxPairs);
+	print.add(static_cast<double>(options.curvature.scaleMode));
+	if (options.curvature.scaleMode == ScaleMode::Adaptive) {
+		print.add(options.curvature.adaptive.minProbes);
+		print.add(options.curvature.adaptive.maxProbes);
+		return print.value();
+	}
+	const RobustCurvatureOptions& paper = options.curvature.paper;
+	print.add(paper.regionScale);
+	print.add(paper.maxIterations);
+	print.add(paper.tolerance);
+	print.add(paper.sigmaFactor);
+	print.add(paper.cut);
+	print.add(paper.featureGate);
+	print.add(paper.robust);
+	print.add(paper.maxPoints);
+	print.add(paper.maxPairs);
 	return print.value();
 }
 
@@ -68,13 +75,28 @@ CurvatureEstimate::CurvatureEstimate(
 			search,
 			options.neighborhood,
 			progress.sub(0.0, 0.1, "Finding neighborhoods"))),
-		field(robustCurvature(
+		field(estimateCurvature(
 			prepared.cloud,
 			search,
 			minimum,
 			options.curvature,
 			progress.sub(0.1, 1.0, "Estimating curvature")))
 {
+	if (options.curvature.scaleMode == ScaleMode::Adaptive)
+		prepared.cloud.normals = surfaceNormals(field);
+}
+
+void CurvatureEstimate::adoptNormals(LayerPoints& points)
+{
+	for (Index i = 0; i < points.size(); ++i)
+		if (const Index r = prepared.representative[i]; r >= 0)
+			points.normals.col(i) = onSideOf(field.correctedNormals.col(r), points.normals.col(i))
+										.cast<Scalarm>()
+										.cast<double>();
+	for (Index r = 0; r < field.size(); ++r)
+		prepared.cloud.normals.col(r) =
+			onSideOf(points.normals.col(prepared.source[r]).normalized(), field.correctedNormals.col(r));
+	makeTangent(prepared.cloud.normals, field);
 }
 
 std::shared_ptr<const CurvatureEstimate>
@@ -96,6 +118,20 @@ std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimate(
 	auto made = std::make_shared<const CurvatureEstimate>(points, options, progress);
 	store({key.points, key.options, made});
 	return made;
+}
+
+std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimateAndCorrect(
+	LayerPoints& points, const EstimateOptions& options, const Progress& progress)
+{
+	const bool twice = options.curvature.scaleMode == ScaleMode::Paper;
+	auto first = std::make_shared<CurvatureEstimate>(points, options, progress.sub(0, twice ? 0.5 : 1, ""));
+	first->adoptNormals(points);
+	if (twice)
+		return estimate(points, options, progress.sub(0.5, 1, ""));
+	// A new estimate from these normals would differ in the last digits: this one answers for the layer it
+	// was written to, but for no options.
+	store({fingerprint(points), 0, first});
+	return first;
 }
 
 LayerCurvature

@@ -13,25 +13,32 @@
 
 #include "layer_conversion.h"
 
+#include "core/curvature_estimate.h"
 #include "core/umbilics.h"
 
 namespace curvature_lines {
 
 struct EstimateOptions {
 	MinimumNeighborhoodOptions neighborhood;
-	RobustCurvatureOptions     curvature;
+	CurvatureOptions           curvature;
 };
 
-// A cloud in the unit frame with its curvature. Not movable: the search tree refers to the cloud.
+// A cloud in the unit frame with its curvature. The cloud's normals are those the directions are tangent
+// to: with ScaleMode::Adaptive, those of the fitted surface where it differs from the layer's. Not movable:
+// the search tree refers to the cloud.
 struct CurvatureEstimate {
 	CurvatureEstimate(
 		const LayerPoints& points, const EstimateOptions& options, const Progress& progress);
 	CurvatureEstimate(const CurvatureEstimate&) = delete;
 
-	const PreparedCloud        prepared;
+	// The points get the estimate's corrected normals, as the layer's precision will hold them, and so
+	// does the cloud; the directions are made tangent to them.
+	void adoptNormals(LayerPoints& points);
+
+	PreparedCloud              prepared;
 	const NeighborSearch       search;
 	const MinimumNeighborhoods minimum;
-	const CurvatureField       field;
+	CurvatureField             field;
 };
 
 // What the layer carries, or what was computed because it carried nothing fresh.
@@ -47,6 +54,10 @@ public:
 	// The estimate for these points and options.
 	std::shared_ptr<const CurvatureEstimate>
 	estimate(const LayerPoints& points, const EstimateOptions& options, const Progress& progress);
+
+	// The estimate for points that get its corrected normals. With ScaleMode::Paper it is made with these.
+	std::shared_ptr<const CurvatureEstimate> estimateAndCorrect(
+		LayerPoints& points, const EstimateOptions& options, const Progress& progress);
 
 	// The curvature the layer carries if it is an estimate of its points and normals as they are;
 	// otherwise the one with default options.

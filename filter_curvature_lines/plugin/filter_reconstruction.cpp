@@ -64,6 +64,7 @@ RichParameterList parameters(const MeshDocument&)
 		"<li><b>If Missing</b>: when most points have none</li>"
 		"<li><b>Never</b>: use those of the layer</li>"
 		"<li><b>Always</b>: replace those of the layer</li></ul>"));
+	addScaleMode(list, true);
 	list.addParam(RichBool(
 		"keep_intermediate_layers",
 		false,
@@ -79,6 +80,7 @@ ReconstructionOptions reconstructionOptions(const Parameters& parameters)
 	options.rejectOutliers         = parameters.flag("reject_outliers");
 	options.denoise                = parameters.flag("denoise");
 	options.smoothDirections       = parameters.flag("smooth_directions");
+	options.curvature.scaleMode    = scaleMode(parameters);
 	options.mesh                   = meshOptions(parameters);
 	options.tracing.targetVertices = parameters.integer("target_vertices", 0, 10000000);
 	options.tracing.epsilon        = parameters.real("epsilon", 0.0, 0.5);

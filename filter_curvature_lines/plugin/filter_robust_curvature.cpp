@@ -19,8 +19,9 @@ RichParameterList parameters(const MeshDocument&)
 		"correct_normals",
 		false,
 		"Correct normals",
-		"Replace the normals by those of the fitted surface, and estimate the curvature with the "
-		"corrected ones."));
+		"Replace the normals by those of the fitted surface; PD1 and PD2 are then tangent to them. "
+		"(With Scale Paper the curvature is estimated once more with the corrected normals; the "
+		"adaptive estimate does not depend on the given ones beyond their side.)"));
 	list.addParam(RichEnum(
 		"scalar",
 		0,
@@ -72,17 +73,6 @@ double scalarOf(Scalar scalar, const VertexCurvatures& values, Index i)
 	return 0.0;
 }
 
-// The points with the normals of a first estimate, as the layer's precision will hold them.
-void correctNormals(LayerPoints& points, const CurvatureEstimate& first)
-{
-	for (Index i = 0; i < points.size(); ++i)
-		if (const Index r = first.prepared.representative[i]; r >= 0)
-			points.normals.col(i) =
-				onSideOf(first.field.correctedNormals.col(r), points.normals.col(i))
-					.cast<Scalarm>()
-					.cast<double>();
-}
-
 void reportCounts(
 	FilterResults& results, const CurvatureEstimate& estimate, const VertexCurvatures& values)
 {
@@ -115,13 +105,9 @@ FilterResults apply(const FilterContext& context)
 	LayerPoints   points = readOrientedPoints(layer);
 	FilterResults results;
 	Stopwatch     total, stage;
-	if (correct) {
-		correctNormals(
-			points, CurvatureEstimate(points, options, context.progress.sub(0, 0.5, "")));
-		results.seconds("normals", stage.lap());
-	}
 	const auto estimate =
-		context.cache.estimate(points, options, context.progress.sub(correct ? 0.5 : 0, 1, ""));
+		correct ? context.cache.estimateAndCorrect(points, options, context.progress) :
+				  context.cache.estimate(points, options, context.progress);
 	results.seconds("curvature", stage.lap());
 
 	const UmbilicRegions umbilics =
@@ -159,19 +145,23 @@ FilterSpec robustCurvatureFilter()
 		"Robust Curvature (M-Estimation)",
 		"compute_curvature_robust_per_vertex",
 		"Principal curvatures and directions of a point cloud, insensitive to noise, outliers and "
-		"wrong normals. Around every point, the variations of the normals between all pairs of "
-		"neighbours are fitted by a curvature tensor; an M-estimator (Geman-McClure) gives pairs "
-		"that disagree less weight, down to none, so that points across a sharp edge do not "
-		"count." +
+		"wrong normals. An M-estimator (Geman-McClure) gives what disagrees less weight, down to "
+		"none, so that outliers and points across a sharp edge do not count."
+		"<br><br>By default the surface is fitted to the positions in regions whose size is found "
+		"from the cloud; the normals given tell its side and no more. With Scale <i>Paper</i>, the "
+		"variations of the normals between all pairs of points within three spacings are fitted by "
+		"a curvature tensor, as published." +
 			helpInput +
 			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); "
 			"vertex "
 			"quality and colour; and the vertex attributes <tt>curv_k1</tt>, <tt>curv_k2</tt>, "
 			"<tt>curv_confidence</tt>, <tt>curv_error</tt> (standard error of k1 - k2), "
-			"<tt>curv_scale</tt> (radius used) and <tt>curv_status</tt> (0 ok, 1 boundary, 2 too "
-			"few "
-			"neighbours, 3 umbilic, 4 isolated, 5 invalid). Points without an estimate get "
-			"curvature 0." +
+			"<tt>curv_scale</tt> (radius used), <tt>curv_feature</tt> (strength of the sharp edge or "
+			"corner nearby, 0 to 1; always 0 with Scale Paper) and <tt>curv_status</tt> (0 ok, 1 "
+			"boundary, 2 too few neighbours, 3 umbilic, 4 isolated, 5 invalid). Points without an "
+			"estimate get curvature 0. PD1 and PD2 are tangent to the fitted surface: to the layer's "
+			"normals where these agree with it within a degree, with Scale Paper always, and with "
+			"<i>Correct normals</i> to the normals it writes." +
 			helpConventions + helpReference,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::VertexColoring,
 		FilterPlugin::SINGLE_MESH,

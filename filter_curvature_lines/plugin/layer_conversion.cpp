@@ -49,6 +49,8 @@ void tangentPair(
 	d2 = n.cross(d1);
 }
 
+constexpr double agreementCosine = 0.99985; // of one degree
+
 void setColor(vcg::Color4b& color, const Eigen::Vector3d& rgb)
 {
 	for (int c = 0; c < 3; ++c)
@@ -104,7 +106,12 @@ VertexCurvatures perVertex(
 	const Index      n = points.size();
 	VertexCurvatures values;
 	for (Eigen::VectorXd* v :
-		 {&values.k1, &values.k2, &values.error, &values.radius, &values.confidence})
+		 {&values.k1,
+		  &values.k2,
+		  &values.error,
+		  &values.radius,
+		  &values.confidence,
+		  &values.feature})
 		v->setZero(n);
 	values.d1.resize(3, n);
 	values.d2.resize(3, n);
@@ -119,13 +126,17 @@ VertexCurvatures perVertex(
 		}
 		else {
 			// A duplicate seen from the other side: its curvatures change sign and so trade places.
-			const bool flipped = normal.dot(prepared.cloud.normals.col(r)) < 0.0;
-			tangentPair(flipped ? field.d2.col(r) : field.d1.col(r), normal, d1, d2);
+			const bool            flipped  = normal.dot(prepared.cloud.normals.col(r)) < 0.0;
+			const Eigen::Vector3d surface  = onSideOf(prepared.cloud.normals.col(r), normal);
+			const bool            accurate = normal.dot(surface) > agreementCosine;
+			tangentPair(
+				flipped ? field.d2.col(r) : field.d1.col(r), accurate ? normal : surface, d1, d2);
 			values.k1[i]         = (flipped ? -field.k2[r] : field.k1[r]) / prepared.diagonal;
 			values.k2[i]         = (flipped ? -field.k1[r] : field.k2[r]) / prepared.diagonal;
 			values.error[i]      = field.error[r] / prepared.diagonal;
 			values.radius[i]     = field.radius[r] * prepared.diagonal;
 			values.confidence[i] = field.confidence[r];
+			values.feature[i]    = field.feature[r];
 			values.status[i]     = field.status[r] == PointStatus::Ok && umbilic[r]
 									   ? PointStatus::Umbilic
 									   : field.status[r];
@@ -154,6 +165,7 @@ void writeCurvature(MeshModel& layer, const LayerPoints& points, const VertexCur
 	writeAttribute(layer, points, "curv_confidence", values.confidence);
 	writeAttribute(layer, points, "curv_error", values.error);
 	writeAttribute(layer, points, "curv_scale", values.radius);
+	writeAttribute(layer, points, "curv_feature", values.feature);
 	writeAttribute(layer, points, "curv_status", status);
 }
 

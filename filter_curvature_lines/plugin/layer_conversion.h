@@ -28,8 +28,10 @@ LayerPoints readOrientedPoints(const MeshModel& layer);
 
 // Curvature of every point of a layer, in model units and with no value a host could choke on.
 struct VertexCurvatures {
-	Eigen::VectorXd          k1, k2, error, radius, confidence; // N
-	Eigen::Matrix3Xd         d1, d2; // 3 x N unit, tangent to the vertex normal
+	Eigen::VectorXd  k1, k2, error, radius, confidence, feature; // N
+	// 3 x N unit, tangent to the vertex normal where it agrees with the estimate's within a degree, else
+	// to the latter.
+	Eigen::Matrix3Xd         d1, d2;
 	std::vector<PointStatus> status; // N
 };
 VertexCurvatures perVertex(

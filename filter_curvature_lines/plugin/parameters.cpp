@@ -69,35 +69,48 @@ int Parameters::layerId(const QString& name) const
 	return static_cast<int>(m_list.getMeshId(name));
 }
 
+void addScaleMode(RichParameterList& list, bool advanced)
+{
+	list.addParam(RichEnum(
+		"scale_mode",
+		static_cast<int>(CurvatureOptions().scaleMode),
+		QStringList() << "Adaptive"
+					  << "Paper",
+		"Scale",
+		"How large the region is that each estimate looks at.<ul>"
+		"<li><b>Adaptive</b>: found from the cloud, around every point: as large as the noise asks "
+		"for and as small as the shape does</li>"
+		"<li><b>Paper</b>: a fixed number of local point spacings, as published</li></ul>",
+		advanced));
+}
+
+ScaleMode scaleMode(const Parameters& parameters)
+{
+	return static_cast<ScaleMode>(parameters.choice("scale_mode"));
+}
+
 void addEstimateParameters(RichParameterList& list)
 {
 	const EstimateOptions defaults;
-	list.addParam(RichEnum(
-		"scale_mode",
-		0,
-		QStringList() << "Paper",
-		"Scale",
-		"How large the region is that each estimate looks at.<ul>"
-		"<li><b>Paper</b>: a ball of a fixed number of local point spacings, see Region "
-		"scale.</li></ul>"));
+	addScaleMode(list, false);
 	list.addParam(RichFloat(
 		"region_scale",
-		Scalarm(defaults.curvature.regionScale),
+		Scalarm(defaults.curvature.paper.regionScale),
 		"Region scale",
-		"Radius of the operating region around each point, in local point spacings (1 to 20). "
-		"Larger regions resist more noise and blur more detail."));
+		"With Scale Paper only: radius of the operating region around each point, in local point "
+		"spacings (1 to 20). Larger regions resist more noise and blur more detail."));
 	list.addParam(RichInt(
 		"max_iterations",
-		defaults.curvature.maxIterations,
+		defaults.curvature.paper.maxIterations,
 		"Maximum iterations",
-		"Largest number of reweighting iterations per point (1 to 1000).",
+		"With Scale Paper only: largest number of reweighting iterations per point (1 to 1000).",
 		true));
 	list.addParam(RichBool(
 		"feature_gate",
-		defaults.curvature.featureGate,
+		defaults.curvature.paper.featureGate,
 		"Feature gate",
-		"Keep only neighbours that agree with the point itself before the fit, so that the other "
-		"side of a sharp edge has no influence.",
+		"With Scale Paper only: keep only neighbours that agree with the point itself before the "
+		"fit, so that the other side of a sharp edge has no influence.",
 		true));
 	list.addParam(RichFloat(
 		"boundary_threshold",
@@ -112,10 +125,10 @@ void addEstimateParameters(RichParameterList& list)
 EstimateOptions estimateOptions(const Parameters& parameters)
 {
 	EstimateOptions options;
-	parameters.choice("scale_mode");
-	options.curvature.regionScale          = parameters.real("region_scale", 1.0, 20.0);
-	options.curvature.maxIterations        = parameters.integer("max_iterations", 1, 1000);
-	options.curvature.featureGate          = parameters.flag("feature_gate");
+	options.curvature.scaleMode            = scaleMode(parameters);
+	options.curvature.paper.regionScale    = parameters.real("region_scale", 1.0, 20.0);
+	options.curvature.paper.maxIterations  = parameters.integer("max_iterations", 1, 1000);
+	options.curvature.paper.featureGate    = parameters.flag("feature_gate");
 	options.neighborhood.boundaryThreshold = parameters.real("boundary_threshold", 1.0, 100.0);
 	return options;
 }

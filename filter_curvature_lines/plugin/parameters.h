@@ -27,7 +27,11 @@ private:
 	RichParameterList m_list;
 };
 
-// The knobs of the curvature estimate.
+// Adaptive or published.
+void      addScaleMode(RichParameterList& list, bool advanced);
+ScaleMode scaleMode(const Parameters& parameters);
+
+// The knobs of the curvature estimate, scale mode included.
 void            addEstimateParameters(RichParameterList& list);
 EstimateOptions estimateOptions(const Parameters& parameters);
 

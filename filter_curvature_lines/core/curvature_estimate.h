@@ -1,0 +1,35 @@
+// Principal curvatures of a cloud, at the scale the cloud asks for or at the published one (A09 section 3).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "adaptive_curvature.h"
+
+namespace curvature_lines {
+
+enum class ScaleMode {
+	Adaptive, // found from the cloud, around every point
+	Paper     // A09: a fixed number of local spacings
+};
+
+struct CurvatureOptions {
+	ScaleMode              scaleMode = ScaleMode::Adaptive;
+	AdaptiveScaleOptions   adaptive;
+	RobustCurvatureOptions paper;
+};
+
+// Directions are tangent to cloud.normals with Paper. With Adaptive they are tangent to the fitted
+// surface, see surfaceNormals().
+CurvatureField estimateCurvature(
+	const PointCloud&           cloud,
+	const NeighborSearch&       search,
+	const MinimumNeighborhoods& minimum,
+	const CurvatureOptions&     options  = {},
+	const Progress&             progress = {});
+
+// 3 x N unit: the normals the directions of a field are tangent to, n = d1 x d2.
+Eigen::Matrix3Xd surfaceNormals(const CurvatureField& field);
+
+// Turns the directions into the tangent planes of `normals` (3 x N unit), as little as possible.
+void makeTangent(const Eigen::Matrix3Xd& normals, CurvatureField& field);
+
+} // namespace curvature_lines

@@ -1,11 +1,11 @@
-// Sample clouds with plane-fit normals or given ones, taken through preparation and robust curvature.
+// Sample clouds with plane-fit normals or given ones, taken through preparation and curvature estimation.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include <Eigen/Dense>
 
 #include "analytic_surfaces.h"
-#include "core/robust_curvature.h"
+#include "core/curvature_estimate.h"
 
 namespace curvature_lines::test {
 
@@ -39,14 +39,24 @@ struct EstimatedField {
 inline EstimatedField estimateField(
 	const Eigen::Matrix3Xd&       positions,
 	const Eigen::Matrix3Xd&       normals,
-	const RobustCurvatureOptions& options = {})
+	const RobustCurvatureOptions& paper     = {},
+	ScaleMode                     scaleMode = ScaleMode::Paper)
 {
+	CurvatureOptions options;
+	options.scaleMode = scaleMode;
+	options.paper     = paper;
 	EstimatedField result;
 	result.prepared = prepareCloud(positions, normals);
 	const NeighborSearch search(result.prepared.cloud.positions);
 	result.minimum = minimumNeighborhoods(result.prepared.cloud, search);
-	result.field   = robustCurvature(result.prepared.cloud, search, result.minimum, options);
+	result.field   = estimateCurvature(result.prepared.cloud, search, result.minimum, options);
 	return result;
+}
+
+inline EstimatedField
+estimateAdaptiveField(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& normals)
+{
+	return estimateField(positions, normals, {}, ScaleMode::Adaptive);
 }
 
 struct CurvatureErrors {

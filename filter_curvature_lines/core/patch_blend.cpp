@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "face_projection.h"
 #include "surface_patch.h"
 
 namespace curvature_lines {
@@ -21,6 +22,8 @@ using Support = BlendOptions::Support;
 constexpr double slabNoise         = 3.0;  // noise units that a ball reaches beyond the disk of a patch
 constexpr double minOpposing       = -0.2; // cosine; beyond it is another sheet
 constexpr double minBent           = 0.35; // cosine; arcs stay well below a quarter of a turn
+constexpr double acrossEdge        = 0.1; // gate: a normal that deviates by 1.5 widths
+constexpr double maxAcrossLeverage = 0.2; // of a patch that tells where the edge is
 constexpr double maxGate           = 2.0;  // gate widths
 constexpr double heightCutoff      = 5.0;  // noise units
 constexpr double growth[] = {1.0 / 3.0, 0.6, 1.0, 1.0};
@@ -35,11 +38,18 @@ struct BlendPatch {
 	double       purity = 1.0;
 };
 
+// What a patch beyond an edge says about a point.
+struct FaceVote {
+	Vector3d normal, center; // center from the point
+	double   height, weight;
+};
+
 struct Scratch {
 	std::vector<Index>    near;
 	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
 	LocalSamples<1>       samples;
 	std::vector<double>   residuals;
+	std::vector<FaceVote> across;
 
 	static Scratch& ofThisThread()
 	{
@@ -53,9 +63,10 @@ double supportRadius(const BlendInput& input, const BlendOptions& options, Index
 	return options.radius * input.spacing[i];
 }
 
-double ballRadius(const BlendInput& input, double radius, Index i)
+// Guides of the other supports have left the noise behind.
+double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
-	return std::hypot(radius, slabNoise * input.noise[i]);
+	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i]) : radius;
 }
 
 void gather(
@@ -226,7 +237,7 @@ BlendPatch patchAt(
 	BlendPatch    patch;
 	Scratch&      scratch = Scratch::ofThisThread();
 	const double  radius  = supportRadius(input, options, i);
-	const double  reach   = ballRadius(input, radius, i);
+	const double  reach   = ballRadius(input, options, radius, i);
 	SurfacePatch& surface = patch.surface;
 	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
 	gather(input, guide, search, i, reach, scratch);
@@ -245,7 +256,9 @@ struct Prediction {
 	Vector3d direction;       // in which the point moves
 	double   residual  = 0.0; // along it
 	double   move      = 0.0; // against it
-	double   weight    = 0.0; // inverse variance times trust
+	double   weight    = 0.0; // inverse variance, less towards the rim of the support
+	double   gate      = 0.0; // 0..1: whether the point is on the patch's side of an edge
+	double   leverage  = 0.0; // variance of the prediction, over that of a point
 	double   influence = 0.0; // of the point on the prediction
 };
 
@@ -253,7 +266,9 @@ struct Prediction {
 void weigh(Prediction& p, double x, double y, double leverage, double gate)
 {
 	const double inside = std::max(0.0, 1.0 - x * x - y * y);
-	p.weight            = inside * inside * gate / std::max(leverage, minLeverage);
+	p.weight            = inside * inside / std::max(leverage, minLeverage);
+	p.gate              = gate;
+	p.leverage          = leverage;
 	p.influence         = leverage * supportWeight(x, y) * gate;
 }
 
@@ -313,6 +328,37 @@ double acceptance(const BlendOptions& options, double residual, double noise)
 		return 1.0;
 	const double e = residual / (options.acceptance * noise);
 	return 1.0 / ((1.0 + e * e) * (1.0 + e * e));
+}
+
+// Votes with similar normals are one face; the heaviest first.
+void addFacesAcross(std::vector<FaceVote>& votes, double width, LocalFaces& faces)
+{
+	while (faces.count < LocalFaces::capacity && !votes.empty()) {
+		const Vector3d seed = std::max_element(votes.begin(), votes.end(), [](auto& a, auto& b) {
+								  return a.weight < b.weight;
+							  })->normal;
+		LocalFace      face;
+		double         sum = 0.0;
+		std::vector<FaceVote>::iterator rest = votes.begin();
+		for (const FaceVote& vote : votes) {
+			const double gate = gateWeight((vote.normal - seed).squaredNorm() / (width * width));
+			if (gate >= acrossEdge) {
+				const double w = vote.weight * gate;
+				face.normal += w * vote.normal;
+				face.center += w * vote.center;
+				face.height += w * vote.height;
+				sum += w;
+			}
+			else {
+				*rest++ = vote;
+			}
+		}
+		votes.erase(rest, votes.end());
+		face.normal.normalize();
+		face.center /= sum;
+		face.height /= sum;
+		faces.face[faces.count++] = face;
+	}
 }
 
 // The patches that cover the targets.
@@ -379,7 +425,7 @@ CoveringPatches::CoveringPatches(
 void CoveringPatches::findCovering(Index i, std::vector<Index>& found) const
 {
 	const double radius = radiusRatio * supportRadius(m_input, m_options, i);
-	m_search.within(m_guide.positions.col(i), ballRadius(m_input, radius, i), found);
+	m_search.within(m_guide.positions.col(i), ballRadius(m_input, m_options, radius, i), found);
 }
 
 void CoveringPatches::describeResiduals(PatchBlend& blend) const
@@ -400,7 +446,9 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 	findCovering(i, found);
 	double   total = 0.0, pure = 0.0, accepted = 0.0; // weights
 	double   residual = 0.0, influence = 0.0;
-	Vector3d move = Vector3d::Zero(), direction = Vector3d::Zero();
+	Vector3d move = Vector3d::Zero(), direction = Vector3d::Zero(), center = Vector3d::Zero();
+	std::vector<FaceVote>& across = Scratch::ofThisThread().across;
+	across.clear();
 	for (const Index j : found) {
 		const BlendPatch& patch = m_patches[j];
 		if (!patch.surface.valid)
@@ -408,21 +456,34 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 		const Prediction p = m_options.support == Support::Bent ?
 								 predictBent(patch, position, place, normal, noise) :
 								 predict(patch, m_options, position, place, normal);
-		if (p.weight <= 0.0)
+		if (m_options.edges && p.gate < acrossEdge && p.leverage < maxAcrossLeverage && p.weight > 0.0)
+			across.push_back({p.normal, patch.surface.origin - position, p.residual, p.weight * patch.purity});
+		const double w = p.weight * p.gate * patch.purity;
+		if (w <= 0.0)
 			continue;
-		const double w = p.weight * patch.purity;
 		const double a = w * acceptance(m_options, p.residual, noise);
-		total += p.weight;
+		total += p.weight * p.gate;
 		pure += w;
 		residual += w * p.residual;
 		influence += w * p.influence;
 		accepted += a;
 		move -= a * p.move * p.direction;
 		direction += a * p.normal;
+		if (m_options.edges)
+			center += a * (patch.surface.origin - position);
 	}
 	if (!(accepted > 0.0))
 		return;
-	blend.positions.col(i) = position + move / accepted;
+	move /= accepted;
+	if (!across.empty() && direction.norm() > 0.0) {
+		const Vector3d n = direction.normalized();
+		LocalFaces     faces;
+		faces.face[faces.count++] = {n, center / accepted, -move.dot(n)};
+		addFacesAcross(across, m_options.gateWidth, faces);
+		if (faces.count > 1)
+			move = moveOntoFaces(faces);
+	}
+	blend.positions.col(i) = position + move;
 	if (direction.norm() > 0.0)
 		blend.normals.col(i) = direction.normalized();
 	blend.residual[i] = residual / pure / std::max(1.0 - influence / pure, minRemaining);

@@ -32,6 +32,7 @@ struct BlendOptions {
 	double  gateWidth  = 0.7; // Gated: deviation from the linear normal that quarters a weight
 	double  purity     = 0.0; // how fast a patch loses weight as its residuals exceed the noise
 	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: no limit
+	bool    edges      = false; // Gated: points beside an edge also see the faces beyond it
 	double  overlap    = 38.0; // patches that cover a point, on average
 };
 

@@ -27,15 +27,17 @@ constexpr double bentStep        = 1.12;
 constexpr double bentStart       = 0.8; // of the free radius
 constexpr double maxBentRadius   = 25.0;
 constexpr double bentTolerance   = 1.01;
-constexpr double bentTie         = 1.002; // scores that are the same: the wider patch has less variance
+constexpr double bentTie         = 1.001; // scores that are the same: the wider patch has less variance
 constexpr double gatedStep       = 1.3;
 constexpr double maxGatedRadius  = 17.0;
 constexpr double gatedTolerance  = 1.015;
 constexpr double minPilotRadius  = 3.2;
 constexpr double pilotNoise      = 8.0; // noise units across which an edge is told from noise
 constexpr double maxFlagRadius   = 6.3;
+constexpr double minNoise        = 1e-10; // a length: of exact samples
 constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
 
+constexpr Index  fewestPoints    = 8; // a quadric and a residual
 constexpr Index  testPoints      = 2000;
 constexpr double testOverlap     = 19.0;
 constexpr double maxResidual     = 3.0; // noise units, in scores
@@ -46,6 +48,7 @@ constexpr double mildPurity      = 1.0;
 constexpr double pilotAcceptance = 2.0; // noise units
 constexpr double gatedAcceptance = 3.0;
 constexpr double sharpPurity     = 0.5; // of smooth patches, below which edges are looked for
+constexpr double sameSide        = 1e-3; // least weight of a neighbour across an edge
 constexpr Index  gainNeighbors   = 24;
 constexpr double smoothGain      = 0.1; // of a squared residual by gates: below it the gate only costs
 constexpr double sharpGain       = 0.3; // above it, it is an edge
@@ -57,18 +60,29 @@ double quantile(std::vector<double> values, double share)
 	return *at;
 }
 
-// Side of the square that holds one point.
+// Side of the square that holds one point, averaged over some hundred neighbours: radii of patches that
+// overlap have to be alike.
 std::vector<double> localSpacing(const PointCloud& cloud, const Progress& progress)
 {
-	constexpr Index      k = 16;
+	constexpr Index      k = 16, averaged = 32, thinning = 8;
+	const Index          n = cloud.size();
 	const NeighborSearch search(cloud.positions);
-	std::vector<double>  spacing(cloud.size());
-	parallelFor(cloud.size(), progress, [&](Index i) {
+	std::vector<double>  raw(n), smooth(n);
+	parallelFor(n, progress.sub(0.0, 0.5, ""), [&](Index i) {
 		const std::vector<Index> near = search.nearest(cloud.positions.col(i), k + 1);
 		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
-		spacing[i]            = distance * std::sqrt(EIGEN_PI / std::max(1.0, near.size() - 1.0));
+		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
 	});
-	return spacing;
+	const Eigen::Matrix3Xd sample = cloud.positions.leftCols(std::max(std::min(n, averaged), n / thinning));
+	const NeighborSearch   sampleSearch(sample);
+	parallelFor(n, progress.sub(0.5, 1.0, ""), [&](Index i) {
+		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
+		double                   sum  = 0.0;
+		for (const Index j : near)
+			sum += std::log(raw[j]);
+		smooth[i] = std::exp(sum / double(near.size()));
+	});
+	return smooth;
 }
 
 // The lower quartile belongs to patches off the edges; chi-squared quantile by Wilson and Hilferty.
@@ -100,9 +114,15 @@ private:
 	double     freeRadius(const Progress& progress) const;
 	double     bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
 	Candidate  smoothCandidate(const Progress& progress) const;
-	BlendGuide edgePilot(const std::vector<Index>& targets, const Progress& progress) const;
-	Candidate  sharpCandidate(const std::vector<Index>& targets, const Progress& progress) const;
-	double     pilotRadius() const;
+	BlendGuide edgePilot(
+		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
+	BlendOptions gatedOptions(double radius) const;
+	Candidate  sharpCandidate(
+		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
+	double     pilotRadius(double widest) const;
+	std::vector<double> sharpShare(
+		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
+	void       sharpen(Candidate& smooth, const Progress& progress) const;
 	bool       fits(double radius) const { return radius * radius * fewestPatches <= size(); }
 	Candidate  candidate(
 		const BlendGuide&         guide,
@@ -171,7 +191,8 @@ void RobustDenoiser::findNoise(const Progress& progress)
 	for (options.radius = smallestRadius;; options.radius *= noiseStep) {
 		m_firstRadius = options.radius;
 		if (m_options.noise <= 0.0) {
-			m_noise = noiseOf(blendPatches(m_input, m_start, options, m_test, progress));
+			m_noise = std::max(
+				minNoise, noiseOf(blendPatches(m_input, m_start, options, m_test, progress)));
 			m_input.noise.assign(size(), m_noise);
 		}
 		if (m_noise * minRadiusNoise < options.radius * m_spacing || !fits(options.radius * noiseStep))
@@ -255,43 +276,53 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 	return c;
 }
 
-double RobustDenoiser::pilotRadius() const
+double RobustDenoiser::pilotRadius(double widest) const
 {
-	return std::max(m_firstRadius, std::max(minPilotRadius, pilotNoise * m_noise / m_spacing));
+	const double radius = std::max(minPilotRadius, pilotNoise * m_noise / m_spacing);
+	return std::max(m_firstRadius, std::min(radius, widest));
 }
 
-// A point beside an edge is explained by the pure patches of its own face.
+// A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth surface is
+// the best there is.
 BlendGuide RobustDenoiser::edgePilot(
-	const std::vector<Index>& targets, const Progress& progress) const
+	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
 	BlendOptions options;
-	options.radius     = pilotRadius();
+	options.radius     = pilotRadius(smooth.radius);
 	options.purity     = strictPurity;
 	options.acceptance = pilotAcceptance;
 	const PatchBlend free =
 		blendPatches(m_input, m_start, options, targets, progress.sub(0.0, 0.5, ""));
-	options.support    = Support::Gated;
-	options.gateWidth  = m_options.sharpness;
-	options.purity     = mildPurity;
-	options.acceptance = gatedAcceptance;
+	BlendGuide guide{smooth.blend.positions, smooth.blend.normals};
+	for (const Index i : targets) {
+		guide.positions.col(i) = free.positions.col(i);
+		guide.normals.col(i)   = free.normals.col(i);
+	}
 	const PatchBlend gated = blendPatches(
-		m_input, {free.positions, free.normals}, options, targets, progress.sub(0.5, 1.0, ""));
+		m_input, guide, gatedOptions(options.radius), targets, progress.sub(0.5, 1.0, ""));
 	return {gated.positions, gated.normals};
 }
 
-Candidate RobustDenoiser::sharpCandidate(
-	const std::vector<Index>& targets, const Progress& progress) const
+BlendOptions RobustDenoiser::gatedOptions(double radius) const
 {
-	BlendGuide   guide = edgePilot(targets, progress.sub(0.0, 0.2, ""));
 	BlendOptions options;
 	options.support    = Support::Gated;
+	options.radius     = radius;
 	options.gateWidth  = m_options.sharpness;
 	options.purity     = mildPurity;
 	options.acceptance = gatedAcceptance;
+	return options;
+}
+
+Candidate RobustDenoiser::sharpCandidate(
+	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
+{
+	BlendGuide   guide   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, ""));
+	BlendOptions options = gatedOptions(pilotRadius(smooth.radius));
 	const double last  = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
 	double       bestScore = std::numeric_limits<double>::infinity();
 	Candidate    best;
-	for (options.radius = pilotRadius();; options.radius *= gatedStep) {
+	for (;; options.radius *= gatedStep) {
 		Candidate    c = candidate(guide, options, targets, progress.sub(0.2, 1.0, ""));
 		const double s = score(c, targets);
 		guide = {c.blend.positions, c.blend.normals};
@@ -301,7 +332,58 @@ Candidate RobustDenoiser::sharpCandidate(
 		}
 		const double next = options.radius * gatedStep;
 		if (s > gatedTolerance * bestScore || next > last || !fits(next))
-			return best;
+			break;
+	}
+	options.radius = best.radius;
+	options.edges  = true;
+	guide          = {best.blend.positions, best.blend.normals};
+	best.blend.positions =
+		blendPatches(m_input, guide, options, targets, progress.sub(0.9, 1.0, "")).positions;
+	return best;
+}
+
+// Share of the gated patches in a point: how much better they explain it and its neighbours on the same side
+// of an edge than smooth patches do.
+std::vector<double> RobustDenoiser::sharpShare(
+	const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const
+{
+	const auto       n = static_cast<Index>(targets.size());
+	Eigen::Matrix3Xd places(3, n);
+	for (Index t = 0; t < n; ++t)
+		places.col(t) = sharp.blend.positions.col(targets[t]);
+	const NeighborSearch search(places);
+	std::vector<double>  share(n);
+	parallelFor(n, {}, [&](Index t) {
+		const Eigen::Vector3d normal = sharp.blend.normals.col(targets[t]);
+		double                gain = 0.0, weights = 0.0;
+		for (const Index k : search.nearest(places.col(t), gainNeighbors)) {
+			const Index  j = targets[k];
+			const double w = std::max(sameSide, normal.dot(sharp.blend.normals.col(j)) - 0.5);
+			gain += w * (smooth.loss[j] - sharp.loss[j]);
+			weights += w;
+		}
+		share[t] = std::clamp((gain / weights - smoothGain) / (sharpGain - smoothGain), 0.0, 1.0);
+	});
+	return share;
+}
+
+void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
+{
+	std::vector<Index> targets;
+	for (const Index i : m_all)
+		if (smooth.blend.purity[i] < sharpPurity)
+			targets.push_back(i);
+	if (targets.empty())
+		return;
+	const Candidate           sharp = sharpCandidate(smooth, targets, progress);
+	const std::vector<double> share = sharpShare(smooth, sharp, targets);
+	for (std::size_t t = 0; t < targets.size(); ++t) {
+		const Index           i = targets[t];
+		const Eigen::Vector3d n = (1.0 - share[t]) * smooth.blend.normals.col(i) +
+								  share[t] * sharp.blend.normals.col(i);
+		smooth.blend.positions.col(i) += share[t] * (sharp.blend.positions.col(i) - smooth.blend.positions.col(i));
+		if (n.norm() > 0.0)
+			smooth.blend.normals.col(i) = n.normalized();
 	}
 }
 
@@ -309,33 +391,20 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
 	m_input.spacing = localSpacing(m_input.cloud, progress.sub(0.0, 0.05, "Measuring spacing"));
 	m_spacing       = quantile(m_input.spacing, 0.5);
-	m_input.spacing.assign(size(), m_spacing);
-	findNoise(progress.sub(0.05, 0.1, "Measuring noise"));
-	findPlainPoints(progress.sub(0.1, 0.15, "Measuring noise"));
-	const Candidate smooth = smoothCandidate(progress.sub(0.15, 0.5, "Fitting smooth patches"));
+	findNoise(progress.sub(0.05, 0.15, "Measuring noise"));
+	findPlainPoints(progress.sub(0.15, 0.2, "Measuring noise"));
+	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, "Fitting smooth patches"));
+	sharpen(cleaned, progress.sub(0.7, 1.0, "Fitting patches up to edges"));
 
 	RobustDenoisingResult result;
 	result.positions.resize(3, size());
 	result.normals.resize(3, size());
+	for (Index i = 0; i < size(); ++i) {
+		result.positions.col(m_order[i]) = cleaned.blend.positions.col(i);
+		result.normals.col(m_order[i])   = cleaned.blend.normals.col(i);
+	}
 	result.noise  = m_noise;
-	result.radius = smooth.radius;
-	std::vector<Index> targets = m_all;
-	const Candidate sharp = sharpCandidate(targets, progress.sub(0.5, 0.9, "Fitting patches to edges"));
-	const NeighborSearch search(sharp.blend.positions);
-	std::vector<double> share(size());
-	parallelFor(size(), progress.sub(0.9, 1.0, ""), [&](Index i) {
-		const auto& normals = sharp.blend.normals;
-		double gain = 0.0, weights = 0.0;
-		for (const Index j : search.nearest(sharp.blend.positions.col(i), gainNeighbors)) {
-			const double w = std::max(0.0, normals.col(i).dot(normals.col(j)) - 0.5) + 1e-3;
-			gain += w * (smooth.loss[j] - sharp.loss[j]);
-			weights += w;
-		}
-		const double t = std::clamp((gain / weights - smoothGain) / (sharpGain - smoothGain), 0.0, 1.0);
-		share[i] = t;
-		result.positions.col(m_order[i]) = t * sharp.blend.positions.col(i) + (1.0 - t) * smooth.blend.positions.col(i);
-		result.normals.col(m_order[i]) = (t * sharp.blend.normals.col(i) + (1.0 - t) * smooth.blend.normals.col(i)).normalized();
-	});
+	result.radius = cleaned.radius;
 	return result;
 }
 
@@ -344,6 +413,8 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 RobustDenoisingResult denoiseRobustly(
 	const PointCloud& cloud, const RobustDenoisingOptions& options, const Progress& progress)
 {
+	if (cloud.size() < fewestPoints)
+		return {cloud.positions, cloud.normals, options.noise, options.radius, 0.0};
 	RobustDenoisingResult result = RobustDenoiser(cloud, options).run(progress);
 	result.rmsMove = std::sqrt((result.positions - cloud.positions).squaredNorm() / cloud.size());
 	return result;

@@ -22,7 +22,7 @@ PIPELINE = "generate_surface_reconstruction_curvature_aligned"
 ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE]
 
 OK, BOUNDARY, TOO_FEW, UMBILIC, ISOLATED, INVALID = range(6)
-ATTRIBUTES = ["curv_k1", "curv_k2", "curv_confidence", "curv_error", "curv_scale", "curv_status"]
+ATTRIBUTES = ["curv_k1", "curv_k2", "curv_confidence", "curv_error", "curv_scale", "curv_feature", "curv_status"]
 
 
 def load_plugin():

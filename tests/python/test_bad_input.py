@@ -99,7 +99,7 @@ OUT_OF_RANGE = [
     (CURVATURE, "boundary_threshold", [0.9, 1e6]),
     (CURVATURE, "umbilic_ratio", [-0.1, 1.1]),
     (CURVATURE, "scalar", [-1, 7]),
-    (CURVATURE, "scale_mode", [99]),
+    (CURVATURE, "scale_mode", [-1, 2, 99]),
     (OUTLIERS, "mode", [2]),
     (OUTLIERS, "sensitivity", [0.0, -1.0]),
     (OUTLIERS, "vote_threshold", [-0.01, 1.01]),
@@ -119,6 +119,7 @@ OUT_OF_RANGE = [
     (PIPELINE, "target_vertices", [-1]),
     (PIPELINE, "epsilon", [-1.0, 0.6]),
     (PIPELINE, "estimate_normals", [3]),
+    (PIPELINE, "scale_mode", [2]),
 ]
 
 
@@ -138,6 +139,8 @@ def test_unknown_enum_label_and_parameter(torus):
     before = snapshot(meshes)
     with pytest.raises(pymeshlab.InvalidEnumException, match="Average"):
         meshes.apply_filter(CURVATURE, scalar="Average")
+    with pytest.raises(pymeshlab.InvalidEnumException, match="Fixed"):
+        meshes.apply_filter(CURVATURE, scale_mode="Fixed")
     with pytest.raises(pymeshlab.PyMeshLabException, match="no_such"):
         meshes.apply_filter(CURVATURE, no_such=1)
     assert snapshot(meshes) == before
@@ -184,7 +187,7 @@ def test_normals_of_any_length(torus):
 def test_scale_of_the_model(torus, scale):
     scaled = curvature(scale * torus["positions"], torus["normals"])
     plain = curvature(torus["positions"], torus["normals"])
-    for key, power in [("curv_k1", -1), ("curv_k2", -1), ("curv_error", -1), ("curv_scale", 1), ("curv_confidence", 0)]:
+    for key, power in [("curv_k1", -1), ("curv_k2", -1), ("curv_error", -1), ("curv_scale", 1), ("curv_feature", 0), ("curv_confidence", 0)]:
         np.testing.assert_allclose(scaled[key] / scale**power, plain[key], rtol=1e-4, atol=1e-5)
     meshes = layer(scale * torus["positions"], torus["normals"])
     lines = apply(meshes, TRACE)

@@ -8,7 +8,10 @@ import pytest
 from helpers import CURVATURE, DENOISE, MESH, OUTLIERS, PIPELINE, SMOOTH, TRACE, attribute, layer_of, snapshot
 
 CHAINS = {
-    "curvature": [(CURVATURE, {"scalar": "Shape Index", "region_scale": 4.0, "correct_normals": True})],
+    "curvature": [(CURVATURE, {"scalar": "Shape Index", "correct_normals": True})],
+    "published_curvature": [
+        (CURVATURE, {"scale_mode": "Paper", "scalar": "Shape Index", "region_scale": 4.0, "correct_normals": True})
+    ],
     "outliers": [(OUTLIERS, {"mode": "Paper", "vote_threshold": 0.6, "delete_selected": True})],
     "denoising": [(DENOISE, {"iterations": 5, "energy": "Squared", "neighbors": "Nearest"})],
     "lines_and_mesh": [(SMOOTH, {"alpha": 0.7}), (TRACE, {"target_vertices": 120}), (MESH, {"triangulate": True})],
@@ -41,12 +44,13 @@ def test_script_is_complete_and_keyed_by_menu_names(noisy_torus, tmp_path):
 def test_script_that_leaves_parameters_out_takes_the_defaults(noisy_torus, tmp_path):
     (tmp_path / "short.mlx").write_text(
         '<!DOCTYPE FilterScript><FilterScript><filter name="Robust Curvature (M-Estimation)">'
+        '<Param name="scale_mode" type="RichEnum" value="1" enum_cardinality="2" enum_val0="Adaptive" enum_val1="Paper"/>'
         '<Param name="region_scale" type="RichFloat" value="4"/></filter></FilterScript>'
     )
     scripted, direct = layer_of(noisy_torus), layer_of(noisy_torus)
     scripted.load_filter_script(str(tmp_path / "short.mlx"))
     scripted.apply_filter_script()
-    direct.apply_filter(CURVATURE, region_scale=4.0)
+    direct.apply_filter(CURVATURE, scale_mode="Paper", region_scale=4.0)
     assert (attribute(scripted, "curv_k1") == attribute(direct, "curv_k1")).all()
 
 
@@ -60,7 +64,7 @@ NAMES = {
     PIPELINE: "Surface Reconstruction: Curvature-Aligned Quads",
 }
 PARAMETERS = {
-    CURVATURE: {"region_scale": 3.0, "max_iterations": 30, "feature_gate": True, "correct_normals": False, "scalar": 0,
+    CURVATURE: {"scale_mode": 0, "region_scale": 3.0, "max_iterations": 30, "feature_gate": True, "correct_normals": False, "scalar": 0,
                 "colorize": True, "boundary_threshold": 2.5, "umbilic_ratio": 0.95},
     OUTLIERS: {"mode": 0, "sensitivity": 3.5, "vote_threshold": 0.5, "rounds": 3, "delete_selected": False},
     DENOISE: {"iterations": 100, "energy": 0, "optimizer": 0, "neighbors": 0},
@@ -69,7 +73,7 @@ PARAMETERS = {
             "projection": 0, "umbilic_ratio": 0.95, "smooth_directions": True},
     MESH: {"triangulate": False, "split_concave": True, "close_holes": False},
     PIPELINE: {"target_vertices": 0, "triangulate": False, "close_holes": False, "reject_outliers": True,
-               "denoise": True, "smooth_directions": True, "estimate_normals": 0, "keep_intermediate_layers": False},
+               "denoise": True, "smooth_directions": True, "estimate_normals": 0, "scale_mode": 0, "keep_intermediate_layers": False},
 }
 
 
@@ -79,6 +83,17 @@ def test_names_and_defaults_that_scripts_rely_on(torus, name, tmp_path):
     defaults = layer_of(torus).filter_parameter_values(name)
     for parameter, value in PARAMETERS[name].items():
         assert defaults[parameter] == pytest.approx(value), parameter
+
+
+@pytest.mark.parametrize("name", [CURVATURE, PIPELINE])
+def test_scale_modes_have_their_places_in_the_enum(noisy_torus, name, tmp_path):
+    meshes = layer_of(noisy_torus)
+    meshes.apply_filter(name)
+    meshes.save_filter_script(str(tmp_path / "script.mlx"))
+    script = ElementTree.parse(tmp_path / "script.mlx").getroot()
+    mode = next(entry for entry in script.iter("Param") if entry.get("name") == "scale_mode")
+    assert mode.get("value") == "0"
+    assert [mode.get(f"enum_val{k}") for k in range(int(mode.get("enum_cardinality")))] == ["Adaptive", "Paper"]
 
 
 def test_default_layer_of_the_mesh_filter(torus):

@@ -20,9 +20,9 @@ constexpr int    minRobustPoints  = 12; // twice the unknowns: a majority must d
 constexpr int    triples          = 24;
 constexpr int    planeSample      = 48;  // points that judge a plane
 constexpr double planeCutoff      = 2.5; // robust deviations
-constexpr double consistent       = 1.4826; // median |r| of a normal distribution to its deviation
-constexpr double minority         = 0.30;   // of the points may be all that lie on one surface
-constexpr double minorityDeviations = 2.5953; // the same for this quantile
+constexpr double minority           = 0.35; // of the points may be all that lie on one surface
+constexpr double minorityDeviations = 2.2036; // deviation of a normal distribution over this quantile of |r|
+constexpr double medianDeviations   = 1.4826; // and over the median
 constexpr double downweighting    = 1.5;
 constexpr double cutoff           = 4.5;
 constexpr int    firstIterations  = 5;
@@ -46,7 +46,7 @@ auto leveragePolynomial(const Matrix& inverse)
 	return c;
 }
 
-double quantileOf(std::vector<double>& values, int n, double share)
+double quantile(std::vector<double>& values, int n, double share)
 {
 	const auto middle = values.begin() + static_cast<int>(share * n);
 	std::nth_element(values.begin(), middle, values.begin() + n);
@@ -65,11 +65,11 @@ std::uint32_t nextRandom(std::uint32_t& state)
 struct Plane {
 	Vector3d normal   = Vector3d::Zero();
 	double   offset   = 0.0;
-	double   deviation = -1.0; // median |distance|; negative when no three points span a plane
+	double   deviation = -1.0; // of the points near it; negative when no three points span a plane
 };
 
-// Least median of squares over random triples: half of the points may lie anywhere.
-Plane medianPlane(
+// Least quantile of squares over random triples: most of the points may lie anywhere.
+Plane majorityPlane(
 	const Eigen::Matrix3Xd& points,
 	double                  radius,
 	std::uint32_t           seed,
@@ -94,7 +94,7 @@ Plane medianPlane(
 		for (int k = 0; k < judges; ++k)
 			distance[k] =
 				std::abs(plane.normal.dot(points.col(k * n / judges)) - plane.offset);
-		plane.deviation = minorityDeviations * quantileOf(distance, judges, minority);
+		plane.deviation = minorityDeviations * quantile(distance, judges, minority);
 		if (best.deviation < 0.0 || plane.deviation < best.deviation)
 			best = plane;
 	}
@@ -144,6 +144,23 @@ void project(const SurfacePatch& patch, const Eigen::Matrix3Xd& points, LocalSam
 	}
 }
 
+// Of residuals that belong to the surface by the scale of the step before: of another sheet, a few spacings
+// away, the median over all of them would be a mixture. 0 in the first step, which takes the minority.
+double robustScale(RobustPatchScratch& scratch, int n, double before)
+{
+	const double limit = cutoff * before;
+	int          count = 0;
+	for (int k = 0; k < n; ++k) {
+		const double r = std::abs(scratch.residuals[k]);
+		if (before <= 0.0 || r < limit)
+			scratch.absolute[count++] = r;
+	}
+	if (count == 0)
+		return before;
+	return before > 0.0 ? medianDeviations * quantile(scratch.absolute, count, 0.5) :
+						  minorityDeviations * quantile(scratch.absolute, count, minority);
+}
+
 // One step of iteratively reweighted least squares; the weights are of the step before.
 bool reweightedStep(SurfacePatch& patch, double minScale, RobustPatchScratch& scratch)
 {
@@ -154,15 +171,7 @@ bool reweightedStep(SurfacePatch& patch, double minScale, RobustPatchScratch& sc
 	const int n        = samples.size();
 	patch.coefficients = fit.coefficients;
 	patchResiduals(patch, samples, scratch.residuals);
-	const bool   first = patch.scale <= 0.0;
-	const double limit0 = first ? 1e300 : cutoff * patch.scale;
-	int m=0;
-	for (int k = 0; k < n; ++k) {
-		const double r = std::abs(scratch.residuals[k]);
-		if (r < limit0) scratch.absolute[m++] = r;
-	}
-	if (m < SurfacePatch::Fit::count) return false;
-	patch.scale = std::max(first ? minorityDeviations * quantileOf(scratch.absolute, m, minority) : consistent * quantileOf(scratch.absolute, m, .5), minScale);
+	patch.scale = std::max(robustScale(scratch, n, patch.scale), minScale);
 	const double unit  = 1.0 / (downweighting * patch.scale);
 	const double limit = (cutoff / downweighting) * (cutoff / downweighting);
 	for (int k = 0; k < n; ++k) {
@@ -282,7 +291,7 @@ bool fitPatchRobustly(
 	patch.radius = radius;
 	if (n < minRobustPoints || !(radius > 0.0))
 		return false;
-	const Plane plane = medianPlane(points, radius, seed, scratch.absolute);
+	const Plane plane = majorityPlane(points, radius, seed, scratch.absolute);
 	if (plane.deviation < 0.0)
 		return false;
 	LocalSamples<1>& samples = scratch.samples;

@@ -71,9 +71,10 @@ struct RobustPatchScratch {
 	std::vector<double> residuals, absolute;
 };
 
-// A quadric through the majority of the points, wherever the others are: least-median-of-squares plane,
-// then iteratively reweighted least squares (Geman-McClure). Points come nearest first and `seed` draws the
-// planes tried. No support weight; the scale is 1.4826 median |r|, at least minScale.
+// A quadric through the largest part of the points that lies on one, wherever the others are: a plane of
+// least quantile of squares, then iteratively reweighted least squares (Geman-McClure). Points come nearest
+// first and `seed` draws the planes tried. No support weight; the scale is 1.4826 median |r| of the points
+// on the surface, at least minScale.
 bool fitPatchRobustly(
 	SurfacePatch&           patch,
 	const Eigen::Matrix3Xd& points,

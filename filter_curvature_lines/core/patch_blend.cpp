@@ -500,7 +500,7 @@ PatchBlend blendPatches(
 	const Progress&           progress)
 {
 	const Index           n = input.cloud.size();
-	const CoveringPatches patches(input, guide, options, targets, progress.sub(0.0, 0.7, ""));
+	const CoveringPatches patches(input, guide, options, targets, progress.sub(0.0, 0.7, "Fitting patches"));
 
 	PatchBlend blend;
 	blend.positions = guide.positions;
@@ -508,7 +508,7 @@ PatchBlend blendPatches(
 	blend.residual.assign(n, std::numeric_limits<double>::infinity());
 	blend.purity.assign(n, 0.0);
 	patches.describeResiduals(blend);
-	parallelFor(static_cast<Index>(targets.size()), progress.sub(0.7, 1.0, ""), [&](Index t) {
+	parallelFor(static_cast<Index>(targets.size()), progress.sub(0.7, 1.0, "Blending patches"), [&](Index t) {
 		patches.blendAt(targets[t], blend);
 	});
 	return blend;

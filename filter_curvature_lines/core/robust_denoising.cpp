@@ -16,6 +16,8 @@ namespace {
 
 using Support = BlendOptions::Support;
 
+constexpr const char* stage = "Denoising";
+
 // Radii in local spacings.
 constexpr double smallestRadius  = 2.5; // 20 points: a quadric with some to spare
 constexpr double noiseStep       = 1.26;
@@ -38,7 +40,7 @@ constexpr double minNoise        = 1e-10; // a length: of exact samples
 constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
 
 constexpr Index  fewestPoints    = 8; // a quadric and a residual
-constexpr Index  testPoints      = 2000;
+constexpr Index  testPoints      = 5000;
 constexpr double testOverlap     = 19.0;
 constexpr double maxResidual     = 3.0; // noise units, in scores
 constexpr double minPurity       = 0.5; // of a point that tells about smooth surfaces
@@ -68,14 +70,14 @@ std::vector<double> localSpacing(const PointCloud& cloud, const Progress& progre
 	const Index          n = cloud.size();
 	const NeighborSearch search(cloud.positions);
 	std::vector<double>  raw(n), smooth(n);
-	parallelFor(n, progress.sub(0.0, 0.5, ""), [&](Index i) {
+	parallelFor(n, progress.sub(0.0, 0.5, stage), [&](Index i) {
 		const std::vector<Index> near = search.nearest(cloud.positions.col(i), k + 1);
 		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
 		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
 	});
 	const Eigen::Matrix3Xd sample = cloud.positions.leftCols(std::max(std::min(n, averaged), n / thinning));
 	const NeighborSearch   sampleSearch(sample);
-	parallelFor(n, progress.sub(0.5, 1.0, ""), [&](Index i) {
+	parallelFor(n, progress.sub(0.5, 1.0, stage), [&](Index i) {
 		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
 		double                   sum  = 0.0;
 		for (const Index j : near)
@@ -94,6 +96,13 @@ double noiseOf(const PatchBlend& blend)
 	const double spread   = 2.0 / (9.0 * degrees);
 	const double expected = std::pow(1.0 - spread - 0.6744898 * std::sqrt(spread), 3);
 	return std::sqrt(quantile(blend.variance, 0.25) / expected);
+}
+
+// Ladders end where the data say: every rung takes a share of what is left of their time.
+Progress rung(const Progress& progress, int k)
+{
+	constexpr double left = 0.75;
+	return progress.sub(1.0 - std::pow(left, k), 1.0 - std::pow(left, k + 1), stage);
 }
 
 struct Candidate {
@@ -188,11 +197,12 @@ void RobustDenoiser::findNoise(const Progress& progress)
 	m_noise = m_options.noise;
 	BlendOptions options;
 	options.overlap = testOverlap;
-	for (options.radius = smallestRadius;; options.radius *= noiseStep) {
+	options.radius  = smallestRadius;
+	for (int k = 0;; ++k, options.radius *= noiseStep) {
 		m_firstRadius = options.radius;
 		if (m_options.noise <= 0.0) {
 			m_noise = std::max(
-				minNoise, noiseOf(blendPatches(m_input, m_start, options, m_test, progress)));
+				minNoise, noiseOf(blendPatches(m_input, m_start, options, m_test, rung(progress, k))));
 			m_input.noise.assign(size(), m_noise);
 		}
 		if (m_noise * minRadiusNoise < options.radius * m_spacing || !fits(options.radius * noiseStep))
@@ -225,8 +235,9 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 	options.purity  = strictPurity;
 	options.overlap = testOverlap;
 	double best = std::numeric_limits<double>::infinity(), radius = m_firstRadius;
-	for (options.radius = m_firstRadius; options.radius < maxFreeRadius; options.radius *= freeStep) {
-		const double s = score(candidate(m_start, options, m_test, progress), m_plain);
+	options.radius = m_firstRadius;
+	for (int k = 0; options.radius < maxFreeRadius; ++k, options.radius *= freeStep) {
+		const double s = score(candidate(m_start, options, m_test, rung(progress, k)), m_plain);
 		if (s < best)
 			radius = options.radius;
 		best = std::min(best, s);
@@ -246,8 +257,9 @@ double RobustDenoiser::bentRadius(
 	options.purity  = mildPurity;
 	options.overlap = testOverlap;
 	double best = std::numeric_limits<double>::infinity(), radius = start;
-	for (options.radius = start; options.radius < maxBentRadius; options.radius *= bentStep) {
-		const double s = score(candidate(guide, options, m_test, progress), m_plain);
+	options.radius = start;
+	for (int k = 0; options.radius < maxBentRadius; ++k, options.radius *= bentStep) {
+		const double s = score(candidate(guide, options, m_test, rung(progress, k)), m_plain);
 		best = std::min(best, s);
 		if (s <= bentTie * best)
 			radius = options.radius;
@@ -260,17 +272,17 @@ double RobustDenoiser::bentRadius(
 Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 {
 	BlendOptions options;
-	options.radius = freeRadius(progress.sub(0.0, 0.2, ""));
+	options.radius = freeRadius(progress.sub(0.0, 0.2, stage));
 	options.purity = strictPurity;
-	Candidate c    = candidate(m_start, options, m_all, progress.sub(0.2, 0.4, ""));
+	Candidate c    = candidate(m_start, options, m_all, progress.sub(0.2, 0.4, stage));
 	options.support = Support::Bent;
 	options.purity  = mildPurity;
 	double start    = bentStart * options.radius;
 	for (int pass = 0; pass < 2; ++pass) {
 		const BlendGuide guide{c.blend.positions, c.blend.normals};
-		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, "");
-		options.radius        = bentRadius(guide, start, part.sub(0.0, 0.6, ""));
-		c                     = candidate(guide, options, m_all, part.sub(0.6, 1.0, ""));
+		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
+		options.radius        = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
+		c                     = candidate(guide, options, m_all, part.sub(0.6, 1.0, stage));
 		start                 = options.radius / bentStep;
 	}
 	return c;
@@ -292,14 +304,14 @@ BlendGuide RobustDenoiser::edgePilot(
 	options.purity     = strictPurity;
 	options.acceptance = pilotAcceptance;
 	const PatchBlend free =
-		blendPatches(m_input, m_start, options, targets, progress.sub(0.0, 0.5, ""));
+		blendPatches(m_input, m_start, options, targets, progress.sub(0.0, 0.5, stage));
 	BlendGuide guide{smooth.blend.positions, smooth.blend.normals};
 	for (const Index i : targets) {
 		guide.positions.col(i) = free.positions.col(i);
 		guide.normals.col(i)   = free.normals.col(i);
 	}
 	const PatchBlend gated = blendPatches(
-		m_input, guide, gatedOptions(options.radius), targets, progress.sub(0.5, 1.0, ""));
+		m_input, guide, gatedOptions(options.radius), targets, progress.sub(0.5, 1.0, stage));
 	return {gated.positions, gated.normals};
 }
 
@@ -317,13 +329,14 @@ BlendOptions RobustDenoiser::gatedOptions(double radius) const
 Candidate RobustDenoiser::sharpCandidate(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
-	BlendGuide   guide   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, ""));
+	BlendGuide   guide   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
 	BlendOptions options = gatedOptions(pilotRadius(smooth.radius));
+	const Progress ladder = progress.sub(0.2, 0.9, stage);
 	const double last  = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
 	double       bestScore = std::numeric_limits<double>::infinity();
 	Candidate    best;
-	for (;; options.radius *= gatedStep) {
-		Candidate    c = candidate(guide, options, targets, progress.sub(0.2, 1.0, ""));
+	for (int k = 0;; ++k, options.radius *= gatedStep) {
+		Candidate    c = candidate(guide, options, targets, rung(ladder, k));
 		const double s = score(c, targets);
 		guide = {c.blend.positions, c.blend.normals};
 		if (s < bestScore) {
@@ -338,7 +351,7 @@ Candidate RobustDenoiser::sharpCandidate(
 	options.edges  = true;
 	guide          = {best.blend.positions, best.blend.normals};
 	best.blend.positions =
-		blendPatches(m_input, guide, options, targets, progress.sub(0.9, 1.0, "")).positions;
+		blendPatches(m_input, guide, options, targets, progress.sub(0.9, 1.0, stage)).positions;
 	return best;
 }
 
@@ -389,12 +402,12 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
-	m_input.spacing = localSpacing(m_input.cloud, progress.sub(0.0, 0.05, "Measuring spacing"));
+	m_input.spacing = localSpacing(m_input.cloud, progress.sub(0.0, 0.05, stage));
 	m_spacing       = quantile(m_input.spacing, 0.5);
-	findNoise(progress.sub(0.05, 0.15, "Measuring noise"));
-	findPlainPoints(progress.sub(0.15, 0.2, "Measuring noise"));
-	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, "Fitting smooth patches"));
-	sharpen(cleaned, progress.sub(0.7, 1.0, "Fitting patches up to edges"));
+	findNoise(progress.sub(0.05, 0.15, stage));
+	findPlainPoints(progress.sub(0.15, 0.2, stage));
+	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
+	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
 
 	RobustDenoisingResult result;
 	result.positions.resize(3, size());

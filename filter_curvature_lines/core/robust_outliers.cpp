@@ -24,9 +24,10 @@ constexpr double surfaceNoises    = 7.0; // radius of a voter in noise units, at
 constexpr double neighborGrowth   = 1.2; // fewer more are not worth a new fit
 constexpr Index  noiseWitnesses   = 20;  // voters whose deviations make the noise, at least
 constexpr double bentOverAnEdge   = 1.5; // noise units of deviation
-// Voters that see an edge, or end before the point, count only where there is no other.
+// Voters that see an edge count only where there is no other; those that end before the point have a say
+// about its company, which at rims and corners others know even less.
 constexpr double bentWeight       = 1e-4;
-constexpr double rimWeight        = 1e-2;
+constexpr double rimWeight        = 0.1;
 constexpr double acceptance       = 0.05; // a point is good if this share of its votes says so,
 constexpr int    lonelyAcceptance = 3;    // and for a point by itself this number of votes
 constexpr double lonelyDistance   = 3.0;  // spacings to the 6th neighbour; in a right-angled corner it is at 2.8
@@ -141,7 +142,7 @@ Verdict count(Ballot& ballot, double crowding, double sensitivity)
 	verdict.lonely  = crowding > lonelyDistance * verdict.spacing;
 	if (verdict.lonely && !ballot.proper)
 		return verdict;
-	if (!verdict.lonely && ballot.rimWeight > ballot.weight) {
+	if (!verdict.lonely) {
 		ballot.votes.insert(ballot.votes.end(), ballot.rim.begin(), ballot.rim.end());
 		ballot.weight += ballot.rimWeight;
 	}

@@ -13,6 +13,7 @@ namespace curvature_lines {
 
 namespace {
 
+constexpr Index  minPoints     = 8;
 constexpr Index  gateNeighbors = 60;
 constexpr double minAgreement  = 0.25;
 constexpr Index  fitCap        = 256;
@@ -31,7 +32,7 @@ Eigen::Matrix3Xd gateNormals(const PointCloud& cloud, const NeighborSearch& sear
 		std::size_t              agree = 0;
 		for (const Index j : near) {
 			all += cloud.normals.col(j);
-			if (own.dot(cloud.normals.col(j)) > 0.0) {
+			if (own.dot(cloud.normals.col(j)) > 0.5) { // random normals hardly agree so far
 				same += cloud.normals.col(j);
 				++agree;
 			}
@@ -60,10 +61,11 @@ public:
 		const PointSample&                           sample,
 		const CurvatureScale&                        scale,
 		const std::vector<std::pair<Index, double>>& users,
+		double                                       noise,
 		double                                       directBelow) :
 			m_scale(scale), m_subsets(sample, scale.height.radius, fitCap),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
-			m_anchors(sample, m_subsets, scale, Zone{&m_userSearch, 1.05 * scale.radius()}),
+			m_anchors(sample, m_subsets, scale, noise, Zone{&m_userSearch, 1.05 * scale.radius()}),
 			m_direct(scale.normalRadius == 0.0 || scale.height.radius < directBelow),
 			m_search(m_anchors.origins())
 	{
@@ -195,18 +197,19 @@ AdaptiveSurface adaptiveSurface(
 	const AdaptiveScaleOptions& options,
 	const Progress&             progress)
 {
+	AdaptiveSurface surface;
+	surface.elements.resize(cloud.size());
+	for (SurfaceElement& element : surface.elements)
+		element.normal.setZero();
+	for (auto* values : {&surface.radius, &surface.variance, &surface.feature})
+		values->setZero(cloud.size());
+	if (cloud.size() < minPoints)
+		return surface;
 	const std::vector<Index> order = shuffledOrder(cloud.positions);
 	const PointSample        sample(reordered(cloud, gateNormals(cloud, search, progress.sub(0, 0.05, "")), order));
 	const ScaleSelection     selection = selectScales(sample, options, progress.sub(0.05, 0.7, ""));
 	const Index              n         = cloud.size();
 
-	AdaptiveSurface surface;
-	surface.elements.resize(n);
-	for (SurfaceElement& element : surface.elements)
-		element.normal.setZero();
-	surface.radius.setZero(n);
-	surface.variance.setZero(n);
-	surface.feature.setZero(n);
 	const auto mixtures = mixturesAtPoints(sample.cloud, selection);
 	std::vector<double> shares(n, 0.0);
 	for (int s = 0; s < int(selection.scales.size()); ++s) {
@@ -218,7 +221,8 @@ AdaptiveSurface adaptiveSurface(
 		if (users.empty())
 			continue;
 		const CurvatureScale& scale = selection.scales[s];
-		const ScaleField field(sample, scale, users, 1.5 * selection.smallestRadius);
+		const ScaleField field(
+			sample, scale, users, selection.noise, 1.5 * selection.smallestRadius);
 		parallelFor(static_cast<Index>(users.size()), {}, [&](Index u) {
 			const auto [i, share]        = users[u];
 			const SurfaceElement element = field.at(i, sample.cloud.positions.col(i), sample.cloud.normals.col(i));

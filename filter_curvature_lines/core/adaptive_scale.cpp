@@ -15,10 +15,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr Index  firstCount   = 42;  // points in the smallest ball
+constexpr Index  smallestCount = 14; // of a tiny cloud
 constexpr double ladderStep   = 1.3;
 constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
 constexpr double largestNormalRadius = 0.36;
 constexpr Index  fitCap       = 256;
+constexpr Index  noisePlaces  = 256;
 constexpr int    probeIterations = 3;
 constexpr double largestResidual = 0.2;  // radii, median over probes
 constexpr double clippedResidual = 0.15; // the least a ball within the noisy layer has
@@ -27,6 +29,10 @@ constexpr double trim            = 0.05;
 // A part of the cloud has a scale of its own if it is this large and its risk falls to this share.
 constexpr Index  minPoolPoints = 1280;
 constexpr Index  minPoolProbes = 32;
+constexpr Index  poolStride     = 4; // pools of neighbouring probes hardly differ
+constexpr Index  hopelessStride = 32;
+constexpr double hopelessRatio  = 16.0;
+constexpr int    biasLevels     = 3; // finer ones it takes to know a bias
 constexpr double switchRatio   = 0.5;
 constexpr double riskExponent  = 4.0;
 constexpr double smallestShare = 0.1; // of the best one's
@@ -63,23 +69,29 @@ std::vector<ProbeEstimate> estimateProbes(
 	std::vector<ProbeEstimate> estimates(starts.size());
 	parallelFor(static_cast<Index>(starts.size()), {}, [&](Index p) {
 		SurfaceElement element = starts[p];
-		if (!element.valid)
-			return;
-		if (anchors)
+		if (element.valid && anchors)
 			element = anchors->normalField(anchors->onFace(element, positions.col(p)));
 		estimates[p] = {
-			element.shape, element.residual / scale.height.radius, element.offset, element.valid};
+			element.shape,
+			starts[p].residual / scale.height.radius,
+			starts[p].offset,
+			element.valid && (anchors || scale.normalRadius == 0.0)};
 	});
 	return estimates;
 }
 
-double medianOf(std::vector<double> values)
+double quantileOf(std::vector<double> values, double share)
 {
 	if (values.empty())
 		return infinity;
-	const auto middle = values.begin() + values.size() / 2;
-	std::nth_element(values.begin(), middle, values.end());
-	return *middle;
+	const auto at = values.begin() + static_cast<std::size_t>(share * values.size());
+	std::nth_element(values.begin(), at, values.end());
+	return *at;
+}
+
+double medianOf(std::vector<double> values)
+{
+	return quantileOf(std::move(values), 0.5);
 }
 
 // Risk of every trial, from the terms of the probes in `pool`.
@@ -121,7 +133,7 @@ private:
 		std::vector<double> residuals;
 		for (const Index p : m_pool)
 			for (const auto& half : trial.halves)
-				if (half[p].valid)
+				if (half[p].residual > 0.0)
 					residuals.push_back(half[p].residual);
 		return medianOf(residuals);
 	}
@@ -237,8 +249,9 @@ double radiusHolding(const PointSample& sample, Index count)
 {
 	std::vector<double> radii;
 	for (Index i = 0; i < std::min<Index>(sample.cloud.size(), 60); ++i) {
-		const auto near = sample.search.nearest(sample.cloud.positions.col(i), count);
-		radii.push_back((sample.cloud.positions.col(near.back()) - sample.cloud.positions.col(i)).norm());
+		const Eigen::Vector3d position = sample.cloud.positions.col(i);
+		const auto            near     = sample.search.nearest(position, count);
+		radii.push_back((sample.cloud.positions.col(near.back()) - position).norm());
 	}
 	return medianOf(radii);
 }
@@ -248,81 +261,185 @@ PointCloud slice(const PointCloud& cloud, Index from, Index to)
 	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
 }
 
+// The residual of quadrics in the smallest balls that reach beyond the noisy layer. A third of the places
+// at least is taken to be smooth.
+double noiseOf(const PointSample& sample, double smallestRadius, int levels)
+{
+	double noise = infinity;
+	for (int level = 0; level < levels; ++level) {
+		const HeightScale   scale{smallestRadius * std::pow(ladderStep, level), 2};
+		const PointSubsets  subsets(sample, scale.radius, fitCap);
+		std::vector<double> residuals(std::min<Index>(sample.cloud.size(), noisePlaces));
+		parallelFor(static_cast<Index>(residuals.size()), {}, [&](Index p) {
+			const SurfaceElement element = surfaceAt(
+				subsets,
+				p,
+				sample.cloud.positions.col(p),
+				sample.cloud.normals.col(p),
+				scale,
+				probeIterations);
+			residuals[p] = element.valid ? element.residual : infinity;
+		});
+		const double residual = quantileOf(residuals, 1.0 / 3.0);
+		noise                 = std::min(noise, residual);
+		if (residual < clippedResidual * scale.radius)
+			return residual;
+	}
+	return noise < infinity ? noise : 0.0;
+}
+
+// The candidate scales of one level after the other on both halves.
+class ScaleTrials {
+public:
+	ScaleTrials(const PointSample& sample, Index probes, double noise) :
+			m_sample(sample), m_first(slice(sample.cloud, 0, sample.cloud.size() / 2)),
+			m_second(slice(sample.cloud, sample.cloud.size() / 2, sample.cloud.size())),
+			m_positions(sample.cloud.positions.leftCols(probes)), m_noise(noise)
+	{
+	}
+	const std::vector<Trial>& all() const { return m_trials; }
+	const Eigen::Matrix3Xd&   positions() const { return m_positions; }
+
+	void run(double radius, int level)
+	{
+		std::vector<Trial> here;
+		for (int f = 0; f < int(families.size()); ++f)
+			if (f == 0 || families[f].normalRatio * radius < largestNormalRadius)
+				here.push_back(
+					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level}, {}});
+		for (int h = 0; h < 2; ++h) {
+			const PointSample& half = h == 0 ? m_first : m_second;
+			const PointSubsets subsets(half, radius, fitCap);
+			for (Trial& trial : here)
+				trial.halves[h] = onHalf(half, subsets, trial.scale);
+		}
+		m_trials.insert(m_trials.end(), here.begin(), here.end());
+	}
+
+	// Finer levels cannot win: around all probes asked, everything at `level` varies far more than the
+	// best so far errs, or what it fits is noise already.
+	bool hopelessBelow(int level) const
+	{
+		const NeighborSearch search(m_positions);
+		std::vector<Index>   everyone(m_positions.cols());
+		std::iota(everyone.begin(), everyone.end(), 0);
+		if (!hopelessBelow(level, everyone))
+			return false;
+		for (Index p = 0; p < static_cast<Index>(everyone.size()); p += hopelessStride)
+			if (!hopelessBelow(level, search.nearest(m_positions.col(p), minPoolProbes)))
+				return false;
+		return true;
+	}
+
+private:
+	std::vector<ProbeEstimate>
+	onHalf(const PointSample& half, const PointSubsets& subsets, const CurvatureScale& scale) const
+	{
+		const Index                 probes = static_cast<Index>(m_positions.cols());
+		std::vector<SurfaceElement> starts(probes);
+		std::vector<double>         residuals(probes);
+		parallelFor(probes, {}, [&](Index p) {
+			starts[p] = surfaceAt(
+				subsets,
+				p,
+				m_positions.col(p),
+				m_sample.cloud.normals.col(p),
+				scale.height,
+				probeIterations);
+			residuals[p] = starts[p].residual / scale.height.radius;
+		});
+		std::unique_ptr<const SurfaceAnchors> anchors;
+		if (scale.normalRadius > 0.0) {
+			// What lies within the noise is judged by its residual: no need of anchors for that.
+			if (quantileOf(residuals, 0.1) < largestResidual)
+				anchors = std::make_unique<const SurfaceAnchors>(half, subsets, scale, m_noise);
+		}
+		return estimateProbes(anchors.get(), starts, m_positions, scale);
+	}
+
+	bool hopelessBelow(int level, const std::vector<Index>& pool) const
+	{
+		const RiskOfPool risks(m_trials, pool);
+		double           best = infinity, least = infinity, residual = infinity, coarser = infinity;
+		for (std::size_t c = 0; c < m_trials.size(); ++c) {
+			if (m_trials[c].scale.level >= level + biasLevels)
+				best = std::min(best, risks.risk()[c]);
+			if (m_trials[c].scale.level == level) {
+				least    = std::min(least, risks.variance()[c]);
+				residual = std::min(residual, risks.residual()[c]);
+			}
+			if (m_trials[c].scale.level == level + 1)
+				coarser = std::min(coarser, risks.residual()[c]);
+		}
+		const bool noise = residual > largestResidual && coarser < residual;
+		return best < infinity && (noise || (least < infinity && least > hopelessRatio * best));
+	}
+
+	const PointSample& m_sample;
+	const PointSample  m_first, m_second;
+	Eigen::Matrix3Xd   m_positions;
+	double             m_noise;
+	std::vector<Trial> m_trials;
+};
+
+// Probes near a rim speak only if there are hardly others.
+std::vector<Index> innerProbes(const std::vector<Trial>& trials, double middleRadius)
+{
+	const auto   off  = [&](const Trial& t) { return std::abs(std::log(t.scale.height.radius / middleRadius)); };
+	const Trial* near = nullptr;
+	for (const Trial& trial : trials)
+		if (trial.scale.family == 0 && (!near || off(trial) < off(*near)))
+			near = &trial;
+	const Index        probes = static_cast<Index>(near->halves[0].size());
+	std::vector<Index> inner;
+	for (Index p = 0; p < probes; ++p)
+		if (0.5 * (near->halves[0][p].offset + near->halves[1][p].offset) < rimOffset)
+			inner.push_back(p);
+	if (inner.size() < 0.3 * probes) {
+		inner.resize(probes);
+		std::iota(inner.begin(), inner.end(), 0);
+	}
+	return inner;
+}
+
 } // namespace
 
 ScaleSelection selectScales(
 	const PointSample& sample, const AdaptiveScaleOptions& options, const Progress& progress)
 {
-	const Index       n = sample.cloud.size();
-	const PointSample first(slice(sample.cloud, 0, n / 2)), second(slice(sample.cloud, n / 2, n));
-	const std::array<const PointSample*, 2> halves = {&first, &second};
-
+	const Index n      = sample.cloud.size();
+	const Index probes = std::min(n, std::clamp<Index>(n / 20, options.minProbes, options.maxProbes));
 	ScaleSelection selection;
-	selection.smallestRadius = radiusHolding(sample, firstCount);
-	const Index probes       = std::min(n, std::clamp<Index>(n / 20, options.minProbes, options.maxProbes));
-	selection.positions      = sample.cloud.positions.leftCols(probes);
+	selection.smallestRadius =
+		radiusHolding(sample, std::clamp<Index>(n / 4, smallestCount, firstCount));
+	const int levels = std::max(
+		1,
+		1 + int(std::log(largestHeightRadius / selection.smallestRadius) / std::log(ladderStep)));
 
-	std::vector<Trial> trials;
-	int                level = 0;
-	for (double radius = selection.smallestRadius; radius < largestHeightRadius;
-		 radius *= ladderStep, ++level) {
-		std::vector<Trial> here;
-		for (int f = 0; f < int(families.size()); ++f)
-			if (families[f].normalRatio * radius < largestNormalRadius)
-				here.push_back(
-					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level}, {}});
-		for (int h = 0; h < 2; ++h) {
-			const PointSubsets subsets(*halves[h], radius, fitCap);
-			std::array<std::vector<SurfaceElement>, 5>            starts;  // by degree
-			for (Trial& trial : here) {
-				const HeightScale& height = trial.scale.height;
-				auto&              at     = starts[height.degree];
-				if (at.empty()) {
-					at.resize(probes);
-					parallelFor(probes, {}, [&](Index p) {
-						at[p] = surfaceAt(
-							subsets,
-							p,
-							selection.positions.col(p),
-							sample.cloud.normals.col(p),
-							height,
-							probeIterations);
-					});
-				}
-				std::unique_ptr<const SurfaceAnchors> anchors;
-				if (trial.scale.normalRadius > 0.0)
-					anchors =
-						std::make_unique<const SurfaceAnchors>(*halves[h], subsets, trial.scale);
-				trial.halves[h] =
-					estimateProbes(anchors.get(), at, selection.positions, trial.scale);
-			}
-		}
-		trials.insert(trials.end(), here.begin(), here.end());
-		progress.report(std::log(radius / selection.smallestRadius) / std::log(largestHeightRadius / selection.smallestRadius));
+	selection.noise = noiseOf(sample, selection.smallestRadius, levels);
+	ScaleTrials run(sample, probes, selection.noise);
+	for (int level = levels - 1; level >= 0; --level) {
+		run.run(selection.smallestRadius * std::pow(ladderStep, level), level);
+		progress.report(double(levels - level) / levels);
+		if (level > 0 && run.hopelessBelow(level))
+			break;
 	}
-
-	// Probes near a rim speak only if there are hardly others.
-	std::vector<Index> inner;
-	{
-		const double middle = std::sqrt(selection.smallestRadius * largestHeightRadius);
-		const Trial* near   = nullptr;
-		for (const Trial& trial : trials)
-			if (trial.scale.family == 0 &&
-				(!near || std::abs(std::log(trial.scale.height.radius / middle)) <
-							  std::abs(std::log(near->scale.height.radius / middle))))
-				near = &trial;
-		for (Index p = 0; p < probes; ++p)
-			if (0.5 * (near->halves[0][p].offset + near->halves[1][p].offset) < rimOffset)
-				inner.push_back(p);
-		if (inner.size() < 0.3 * probes) {
-			inner.resize(probes);
-			std::iota(inner.begin(), inner.end(), 0);
-		}
-	}
-
+	const std::vector<Trial>& trials = run.all();
 	for (const Trial& trial : trials)
 		selection.scales.push_back(trial.scale);
+	selection.positions = run.positions();
+
+	const std::vector<Index> inner =
+		innerProbes(trials, std::sqrt(selection.smallestRadius * largestHeightRadius));
 	const RiskOfPool whole(trials, inner);
+	selection.mixtures.assign(1, mixtureOf(whole));
+	if (!(whole.risk()[argmin(whole.risk())] < infinity)) {
+		// Too few points for two halves: a quadric through what there is.
+		selection.scales.push_back({{selection.smallestRadius, 2}, 0.0, 0, 0});
+		ScaleMixture only;
+		only.weights = {{int(trials.size()), 1.0}};
+		selection.mixtures.assign(1, only);
+	}
 	Eigen::Matrix3Xd innerPositions(3, inner.size());
 	for (std::size_t k = 0; k < inner.size(); ++k)
 		innerPositions.col(k) = selection.positions.col(inner[k]);
@@ -331,23 +448,28 @@ ScaleSelection selectScales(
 	// merely thinks.
 	const Index smallest =
 		std::max(minPoolProbes, static_cast<Index>(std::int64_t(minPoolPoints) * probes / n));
-	selection.mixtures.assign(probes, mixtureOf(whole));
-	parallelFor(probes, {}, [&](Index p) {
+	Eigen::Matrix3Xd asked(3, (probes + poolStride - 1) / poolStride);
+	for (Index a = 0; a < asked.cols(); ++a)
+		asked.col(a) = selection.positions.col(a * poolStride);
+	std::vector<ScaleMixture> mixtures(asked.cols(), selection.mixtures[0]);
+	parallelFor(static_cast<Index>(asked.cols()), {}, [&](Index a) {
 		std::size_t chosen = argmin(whole.risk());
 		for (const Index size : {4 * smallest, smallest}) {
 			if (size >= static_cast<Index>(inner.size()))
 				continue;
 			std::vector<Index> pool;
-			for (const Index k : search.nearest(selection.positions.col(p), size))
+			for (const Index k : search.nearest(asked.col(a), size))
 				pool.push_back(inner[k]);
 			const RiskOfPool  around(trials, pool);
 			const std::size_t other = argmin(around.risk());
 			if (around.risk()[other] < switchRatio * around.risk()[chosen]) {
-				chosen                = other;
-				selection.mixtures[p] = mixtureOf(around);
+				chosen      = other;
+				mixtures[a] = mixtureOf(around);
 			}
 		}
 	});
+	selection.positions = asked;
+	selection.mixtures  = std::move(mixtures);
 	return selection;
 }
 

@@ -21,9 +21,10 @@ struct ScaleMixture {
 
 struct ScaleSelection {
 	std::vector<CurvatureScale> scales;    // all candidates
-	Eigen::Matrix3Xd            positions; // of the probes
-	std::vector<ScaleMixture>   mixtures;  // per probe
+	Eigen::Matrix3Xd            positions; // where the mixtures hold
+	std::vector<ScaleMixture>   mixtures;  // one per position
 	double                      smallestRadius = 0.0; // where the ladder starts
+	double                      noise          = 0.0; // standard deviation of heights (length)
 };
 
 // `sample`: shuffled, with gate normals.

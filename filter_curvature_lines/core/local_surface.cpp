@@ -139,6 +139,7 @@ bool LocalSurfaceFitter::heightStep(
 	Eigen::Matrix2d       hessian;
 	hessian << 2.0 * c[3], c[4], c[4], 2.0 * c[5];
 	const double freedom = double(m_heights.size() - monomialCount(Degree)) / m_heights.size();
+	element.samples      = m_heights.size();
 	element.residual     = radius * std::sqrt(fit.squaredResidual / (freedom * fit.sumOfWeights));
 	element.offset   = std::hypot(fit.gram(0, 1), fit.gram(0, 2)) / fit.sumOfWeights;
 	element.position += c[0] * radius * frame.n;

@@ -16,6 +16,7 @@ struct SurfaceElement {
 	Eigen::Matrix3d shape    = Eigen::Matrix3d::Zero();  // 1/length
 	double          residual = 0.0; // RMS of the heights that were fitted, length
 	double          offset   = 0.0; // distance of the weighted mean of the points, in radii: 0 inside, large at a rim
+	Index           samples  = 0;   // points that were fitted
 	bool            valid    = false;
 };
 

@@ -17,13 +17,16 @@ constexpr int    anchorIterations = 2;
 constexpr Index  countedBalls    = 40;
 constexpr Index  maxSubsets      = 64;
 
-// Residuals this many times that of a good fit, plus this many radii, do not come from noise.
-constexpr double misfitRatio  = 1.15;
+// Residuals this much above that of a good fit, plus this many radii, do not come from noise.
+constexpr double misfitRatio  = 0.15;
+constexpr double misfitErrors = 2.0; // standard errors of a residual
 constexpr double misfitFloor  = 0.004;
 constexpr double maxMisfits   = 0.75; // share of the anchors; more, and it is the scale that does not fit
 constexpr double minAgreement = 0.35; // share of the anchors within half a radius
 constexpr Index  minAnchors   = 30;
 constexpr double linkLength   = 2.0 * anchorSpacing; // radii
+constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
+constexpr double faceGain     = 0.9;  // and less than that of one surface
 constexpr double faceReach    = 1.5;                 // radii
 constexpr double smallestJump = 0.35;
 
@@ -108,15 +111,16 @@ SurfaceAnchors::SurfaceAnchors(
 	const PointSample&    sample,
 	const PointSubsets&   subsets,
 	const CurvatureScale& scale,
+	double                noise,
 	const Zone&           zone,
-	const Progress&       progress) : m_scale(scale)
+	const Progress&       progress) : m_scale(scale), m_noise(noise)
 {
 	fitAll(sample, subsets, zone, progress);
 	m_originSearch = std::make_unique<NeighborSearch>(m_origins);
 	flagMisfits();
 	if (m_hasEdges) {
 		link();
-		continueFaces();
+		continueFaces(subsets);
 	}
 	if (m_hasEdges)
 		cutLinks();
@@ -162,12 +166,17 @@ void SurfaceAnchors::flagMisfits()
 	for (const SurfaceElement& element : m_elements)
 		residuals.push_back(element.residual);
 	std::nth_element(residuals.begin(), residuals.begin() + n / 3, residuals.end());
-	m_noise                = residuals[n / 3];
-	const double threshold = misfitRatio * m_noise + misfitFloor * m_scale.height.radius;
+	const double      usual = residuals[n / 3];
 	std::vector<char> high(n);
 	Index             count = 0;
-	for (Index a = 0; a < n; ++a)
-		count += high[a] = m_elements[a].residual > threshold;
+	for (Index a = 0; a < n; ++a) {
+		// The residual of few samples scatters; the kernel leaves about half of them.
+		const double freedom = std::max(
+			2.0, 0.5 * m_elements[a].samples - monomialCount(m_scale.height.degree));
+		const double ratio = 1.0 + std::max(misfitRatio, misfitErrors / std::sqrt(2.0 * freedom));
+		count += high[a] =
+			m_elements[a].residual > ratio * usual + misfitFloor * m_scale.height.radius;
+	}
 	if (count > maxMisfits * n)
 		return;
 	// An edge passes through the balls of many neighbours, chance through that of one.
@@ -196,15 +205,26 @@ void SurfaceAnchors::link()
 	for (Index a = 0; a < size(); ++a)
 		for (const Index b : m_links[a])
 			if (a < b && !m_misfit[a] && !m_misfit[b])
-				jumps.push_back((m_elements[a].normal - m_elements[b].normal).norm());
+				jumps.push_back(jumpBetween(a, b));
 	if (jumps.empty())
 		return;
 	std::nth_element(jumps.begin(), jumps.begin() + jumps.size() / 2, jumps.end());
 	m_jump = std::max(smallestJump, 4.0 * jumps[jumps.size() / 2]);
 }
 
+// What is left of the difference of two normals after the bend the elements themselves predict.
+double SurfaceAnchors::jumpBetween(Index a, Index b) const
+{
+	const SurfaceElement& first  = m_elements[a];
+	const SurfaceElement& second = m_elements[b];
+	const Eigen::Vector3d d      = second.position - first.position;
+	const double onward   = (second.normal - (first.normal + first.shape * d).normalized()).norm();
+	const double backward = (first.normal - (second.normal - second.shape * d).normalized()).norm();
+	return std::max(onward, backward);
+}
+
 // Before misfits have a face of their own, they separate the faces: links to them do not count.
-void SurfaceAnchors::continueFaces()
+void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 {
 	const double reach = faceReach * m_scale.height.radius;
 	m_search           = std::make_unique<NeighborSearch>(m_positions);
@@ -222,14 +242,25 @@ void SurfaceAnchors::continueFaces()
 	});
 	std::vector<SurfaceElement> continued(size());
 	parallelFor(size(), {}, [&](Index a) {
-		EdgeNearby edge;
 		if (!m_misfit[a])
 			return;
-		const SurfaceElement face  = faceAt(m_origins.col(a), &edge);
-		const double         height = (face.position - m_origins.col(a)).norm();
-		if (edge.angle > 0.0 && height < 3.0 * m_noise + misfitFloor * m_scale.height.radius)
-			continued[a] = face;
+		// A bend that is merely too tight for the radius is no edge: faces continued into it do not fit.
+		const Eigen::Vector3d   position = m_origins.col(a);
+		const std::vector<Face> faces    = facesAround(position);
+		if (faces.size() < 2)
+			return;
+		const double misfit = misfitOfFaces(subsets[a], position, faces);
+		if (misfit < faceRatio * m_noise + misfitFloor * m_scale.height.radius &&
+			misfit < faceGain * m_elements[a].residual)
+			continued[a] = faceAt(position);
 	});
+	// Misfits that no edge explains count only next to one, as at a corner.
+	for (Index a = 0; a < size(); ++a) {
+		const NeighborLists::Row row = m_links[a];
+		if (!continued[a].valid &&
+			std::none_of(row.begin(), row.end(), [&](Index b) { return continued[b].valid; }))
+			m_misfit[a] = 0;
+	}
 	m_hasEdges = false;
 	for (Index a = 0; a < size(); ++a)
 		if (continued[a].valid) {
@@ -245,7 +276,7 @@ void SurfaceAnchors::cutLinks()
 	m_atCut.assign(size(), 0);
 	for (Index a = 0; a < size(); ++a)
 		for (const Index b : m_links[a]) {
-			if ((m_elements[a].normal - m_elements[b].normal).norm() < m_jump)
+			if (!(m_misfit[a] || m_misfit[b]) || jumpBetween(a, b) < m_jump)
 				rows[a].push_back(b);
 			else
 				m_atCut[a] = 1;
@@ -261,6 +292,15 @@ bool SurfaceAnchors::nearEdge(const Eigen::Vector3d& position) const
 	std::vector<Index>& near = scratchList();
 	m_originSearch->within(position, m_scale.height.radius, near);
 	return std::any_of(near.begin(), near.end(), [&](Index a) { return m_atCut[a]; });
+}
+
+// Faces end where they meet: the foot point of a point on either side of the surface lies, at a convex
+// edge, on the face it is highest above, at a concave one on the face it is lowest above.
+double SurfaceAnchors::nearness(Meeting meeting, double height)
+{
+	return meeting == Meeting::Convex  ? -height :
+		   meeting == Meeting::Concave ? height :
+										 std::abs(height);
 }
 
 std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vector3d& position) const
@@ -305,9 +345,7 @@ std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vecto
 	return faces;
 }
 
-// Faces end where they meet: the foot point of a point on either side of the surface lies, at a convex
-// edge, on the face it is highest above, at a concave one on the face it is lowest above.
-void SurfaceAnchors::sortByNearness(std::vector<Face>& faces)
+SurfaceAnchors::Meeting SurfaceAnchors::meetingOf(const std::vector<Face>& faces)
 {
 	bool convex = true, concave = true;
 	for (const Face& a : faces)
@@ -317,12 +355,37 @@ void SurfaceAnchors::sortByNearness(std::vector<Face>& faces)
 				convex            = convex && side < 0.0;
 				concave           = concave && side > 0.0;
 			}
-	const auto distance = [&](const Face& face) {
-		return convex ? -face.height : concave ? face.height : std::abs(face.height);
-	};
-	std::stable_sort(faces.begin(), faces.end(), [&](const Face& a, const Face& b) {
-		return distance(a) < distance(b);
-	});
+	return convex ? Meeting::Convex : concave ? Meeting::Concave : Meeting::Mixed;
+}
+
+double SurfaceAnchors::misfitOfFaces(
+	const PointSample& sample, const Eigen::Vector3d& position, const std::vector<Face>& faces) const
+{
+	thread_local std::vector<Index> near;
+	const double                    radius  = m_scale.height.radius;
+	const Meeting                   meeting = meetingOf(faces);
+	sample.search.within(position, radius, near);
+	std::vector<std::pair<double, double>> samples; // squared distance, weight
+	for (const Index i : near) {
+		const Eigen::Vector3d d        = sample.cloud.positions.col(i) - position;
+		double                distance = 0.0, nearest = std::numeric_limits<double>::infinity();
+		for (const Face& face : faces) {
+			const double height = face.height + d.dot(face.normal) + 0.5 * d.dot(face.shape * d);
+			const double key    = nearness(meeting, height);
+			if (key < nearest) {
+				nearest  = key;
+				distance = height;
+			}
+		}
+		samples.emplace_back(distance * distance, ballKernel(d.squaredNorm() / (radius * radius)));
+	}
+	std::sort(samples.begin(), samples.end());
+	double sum = 0.0, total = 0.0;
+	for (std::size_t k = 0; k < 0.95 * samples.size(); ++k) { // outliers do not decide
+		sum += samples[k].first * samples[k].second;
+		total += samples[k].second;
+	}
+	return total > 0.0 ? std::sqrt(sum / total) : std::numeric_limits<double>::infinity();
 }
 
 SurfaceElement SurfaceAnchors::faceAt(const Eigen::Vector3d& position, EdgeNearby* edge) const
@@ -331,7 +394,10 @@ SurfaceElement SurfaceAnchors::faceAt(const Eigen::Vector3d& position, EdgeNearb
 	SurfaceElement    result;
 	if (faces.empty())
 		return result;
-	sortByNearness(faces);
+	const Meeting meeting = meetingOf(faces);
+	std::stable_sort(faces.begin(), faces.end(), [&](const Face& a, const Face& b) {
+		return nearness(meeting, a.height) < nearness(meeting, b.height);
+	});
 	const Face& own = faces.front();
 	result.normal   = own.normal;
 	result.position = position - own.height * own.normal;
@@ -393,7 +459,7 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 	}
 	for (std::size_t k = 0; k < reached.size(); ++k)
 		for (const Index b : m_links[reached[k]])
-			if (inBall[b] && (m_elements[b].normal - m_elements[reached[k]].normal).norm() < m_jump) {
+			if (inBall[b]) {
 				inBall[b] = 0;
 				reached.push_back(b);
 			}
@@ -402,17 +468,31 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 	near.swap(reached);
 }
 
+// Distance of the weighted mean of the anchors from the centre of the ball, in radii.
+double
+SurfaceAnchors::offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const
+{
+	Eigen::Vector3d sum   = Eigen::Vector3d::Zero();
+	double          total = 0.0;
+	for (const Index a : near) {
+		const Eigen::Vector3d d = (m_elements[a].position - center) / m_scale.normalRadius;
+		const double          w = ballKernel(d.squaredNorm());
+		sum += w * d;
+		total += w;
+	}
+	return total > 0.0 ? sum.norm() / total : 1.0;
+}
+
 SurfaceElement SurfaceAnchors::normalField(const SurfaceElement& start) const
 {
 	thread_local std::vector<Index> near;
 	m_search->within(start.position, m_scale.normalRadius, near);
 	int degree = 3;
 	if (m_hasEdges && std::any_of(near.begin(), near.end(), [&](Index a) { return m_atCut[a]; })) {
-		const std::size_t all = near.size();
 		keepConnected(start, near);
 		// A cubic through one side of a ball says little about the other.
-		if (near.size() < 0.75 * all)
-			degree = near.size() < 0.35 * all ? 1 : 2;
+		const double off = offsetOf(near, start.position);
+		degree           = off > 0.25 ? 1 : off > 0.12 ? 2 : 3;
 	}
 	return LocalSurfaceFitter::ofThisThread().fitNormals(
 		m_elements, near, start, m_scale.normalRadius, degree);

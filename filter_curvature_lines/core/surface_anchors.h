@@ -87,6 +87,7 @@ public:
 		const PointSample&    sample,
 		const PointSubsets&   subsets,
 		const CurvatureScale& scale,
+		double                noise, // of the heights (length)
 		const Zone&           zone     = {},
 		const Progress&       progress = {});
 
@@ -118,15 +119,25 @@ private:
 		double          weight = 0.0;
 		int             members = 0;
 	};
+	enum class Meeting { Convex, Concave, Mixed };
+
 	std::vector<Face> facesAround(const Eigen::Vector3d& position) const;
-	static void       sortByNearness(std::vector<Face>& faces);
+	static Meeting    meetingOf(const std::vector<Face>& faces);
+	static double     nearness(Meeting meeting, double height); // the smallest is the nearest
+	// RMS distance of the points around from the nearest of the faces.
+	double misfitOfFaces(
+		const PointSample&       sample,
+		const Eigen::Vector3d&   position,
+		const std::vector<Face>& faces) const;
 
 	void fitAll(
 		const PointSample& sample, const PointSubsets& subsets, const Zone& zone, const Progress& progress);
 	void flagMisfits();
 	void link();
-	void continueFaces();
+	void continueFaces(const PointSubsets& subsets);
 	void cutLinks();
+	double offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const;
+	double jumpBetween(Index a, Index b) const;
 	// Those of `near` that are reached from the best match of `start` without crossing a cut.
 	void keepConnected(const SurfaceElement& start, std::vector<Index>& near) const;
 
@@ -136,7 +147,7 @@ private:
 	std::unique_ptr<NeighborSearch> m_search;       // over m_positions
 	std::unique_ptr<NeighborSearch> m_originSearch; // over m_origins
 	bool                            m_hasEdges = false;
-	double                          m_noise    = 0.0; // residual where one polynomial fits
+	double                          m_noise    = 0.0;
 	double                          m_jump     = 0.35;
 	std::vector<char>               m_misfit;  // an edge runs through the ball
 	std::vector<char>               m_atCut;   // a link of it was cut

@@ -416,9 +416,12 @@ CoveringPatches::CoveringPatches(
 				used[j] = 1;
 		}
 	const NeighborSearch search(guide.positions);
-	parallelFor(static_cast<Index>(m_patches.size()), progress, [&](Index j) {
-		if (used[j])
-			m_patches[j] = patchAt(input, guide, options, search, j);
+	std::vector<Index>   centers;
+	for (const Index j : input.route)
+		if (j < m_centers.cols() && used[j])
+			centers.push_back(j);
+	parallelFor(static_cast<Index>(centers.size()), progress, [&](Index c) {
+		m_patches[centers[c]] = patchAt(input, guide, options, search, centers[c]);
 	});
 }
 

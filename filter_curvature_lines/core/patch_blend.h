@@ -13,6 +13,7 @@ struct BlendInput {
 	PointCloud          cloud;
 	std::vector<double> spacing; // per point, smooth: the unit of radii
 	std::vector<double> noise;   // per point: standard deviation of the positions, a length
+	std::vector<Index>  route;   // all points, near ones in turn: a cache then holds what they share
 };
 
 // Where the points are thought to be: tells frames and gates. Heights are always those of the input, so that

@@ -44,6 +44,8 @@ constexpr Index  testPoints      = 5000;
 constexpr double testOverlap     = 19.0;
 constexpr double maxResidual     = 3.0; // noise units, in scores
 constexpr double minPurity       = 0.5; // of a point that tells about smooth surfaces
+constexpr double edgePurity      = 0.01; // of a point beside an edge without doubt
+constexpr double fewEdges        = 0.01; // share of such points
 constexpr double minPlainShare   = 0.1;
 constexpr double strictPurity    = 2.0;
 constexpr double mildPurity      = 1.0;
@@ -105,6 +107,28 @@ Progress rung(const Progress& progress, int k)
 	return progress.sub(1.0 - std::pow(left, k), 1.0 - std::pow(left, k + 1), stage);
 }
 
+// Along a Morton curve.
+std::vector<Index> routeThrough(const Eigen::Matrix3Xd& positions)
+{
+	constexpr int         bits   = 10;
+	const Eigen::Vector3d corner = positions.rowwise().minCoeff();
+	const double extent = std::max(1e-30, (positions.colwise() - corner).maxCoeff());
+	std::vector<std::pair<std::uint32_t, Index>> cells;
+	for (Index i = 0; i < positions.cols(); ++i) {
+		const Eigen::Vector3d p    = (positions.col(i) - corner) * (((1 << bits) - 1) / extent);
+		std::uint32_t         code = 0;
+		for (int b = bits - 1; b >= 0; --b)
+			for (int c = 0; c < 3; ++c)
+				code = code << 1 | (static_cast<std::uint32_t>(p[c]) >> b & 1u);
+		cells.emplace_back(code, i);
+	}
+	std::sort(cells.begin(), cells.end());
+	std::vector<Index> route;
+	for (const auto& cell : cells)
+		route.push_back(cell.second);
+	return route;
+}
+
 struct Candidate {
 	double              radius = 0.0;
 	PatchBlend          blend;
@@ -144,7 +168,7 @@ private:
 	std::vector<Index>     m_order;
 	BlendInput             m_input;
 	BlendGuide             m_start;            // the input itself
-	std::vector<Index>     m_all, m_test;      // points; those that scores are taken from
+	std::vector<Index>     m_test;             // points that scores are taken from
 	std::vector<Index>     m_plain;            // of m_test, off the edges
 	double                 m_spacing     = 0.0; // median
 	double                 m_noise       = 0.0;
@@ -162,9 +186,9 @@ RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOpt
 		m_input.cloud.normals.col(i)   = cloud.normals.col(m_order[i]);
 	}
 	m_start = {m_input.cloud.positions, m_input.cloud.normals};
-	m_all.resize(n);
-	std::iota(m_all.begin(), m_all.end(), 0);
-	m_test.assign(m_all.begin(), m_all.begin() + std::min(n, testPoints));
+	m_input.route = routeThrough(m_input.cloud.positions);
+	m_test.resize(std::min(n, testPoints));
+	std::iota(m_test.begin(), m_test.end(), 0);
 	m_plain = m_test;
 }
 
@@ -220,10 +244,15 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 	options.radius         = std::max(options.radius, m_firstRadius);
 	const PatchBlend blend = blendPatches(m_input, m_start, options, m_test, progress);
 	std::vector<Index> plain;
-	for (const Index i : m_test)
+	Index              clear = 0;
+	for (const Index i : m_test) {
 		if (blend.purity[i] > minPurity)
 			plain.push_back(i);
-	if (double(plain.size()) > minPlainShare * double(m_test.size()))
+		clear += blend.purity[i] < edgePurity;
+	}
+	// To leave out the points that are noisy by chance would favour the radius they were told at.
+	const double share = 1.0 / double(m_test.size());
+	if (share * clear > fewEdges && share * double(plain.size()) > minPlainShare)
 		m_plain = std::move(plain);
 }
 
@@ -274,7 +303,7 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 	BlendOptions options;
 	options.radius = freeRadius(progress.sub(0.0, 0.2, stage));
 	options.purity = strictPurity;
-	Candidate c    = candidate(m_start, options, m_all, progress.sub(0.2, 0.4, stage));
+	Candidate c    = candidate(m_start, options, m_input.route, progress.sub(0.2, 0.4, stage));
 	options.support = Support::Bent;
 	options.purity  = mildPurity;
 	double start    = bentStart * options.radius;
@@ -282,7 +311,7 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 		const BlendGuide guide{c.blend.positions, c.blend.normals};
 		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
 		options.radius        = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
-		c                     = candidate(guide, options, m_all, part.sub(0.6, 1.0, stage));
+		c                     = candidate(guide, options, m_input.route, part.sub(0.6, 1.0, stage));
 		start                 = options.radius / bentStep;
 	}
 	return c;
@@ -383,7 +412,7 @@ std::vector<double> RobustDenoiser::sharpShare(
 void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 {
 	std::vector<Index> targets;
-	for (const Index i : m_all)
+	for (const Index i : m_input.route)
 		if (smooth.blend.purity[i] < sharpPurity)
 			targets.push_back(i);
 	if (targets.empty())

@@ -21,9 +21,9 @@ struct LocalFaces {
 	int                      count = 0;
 };
 
-// The move from the point to the nearest place on the faces, cut off where they meet: the surface of the
-// intersection of their half spaces where they meet in a ridge, of the union where they meet in a valley.
-// Faces that do neither with the first one count for nothing.
+// The move from the point to the nearest place on the faces, cut off where they meet: the surface of
+// the intersection of their half spaces at a ridge, of the union at a valley. A point inside all of them
+// moves to the nearest. Faces that do neither with the first one count for nothing.
 Eigen::Vector3d moveOntoFaces(const LocalFaces& faces);
 
 } // namespace curvature_lines

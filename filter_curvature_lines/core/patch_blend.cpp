@@ -295,7 +295,7 @@ Prediction predict(
 	return p;
 }
 
-// The point stays at its arc length and moves along the guide's normal until it has the predicted height.
+// The point stays at its arc length and moves along the guide's normal to the predicted height.
 Prediction predictBent(
 	const BlendPatch& patch,
 	const Vector3d&   position,
@@ -459,8 +459,13 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 		const Prediction p = m_options.support == Support::Bent ?
 								 predictBent(patch, position, place, normal, noise) :
 								 predict(patch, m_options, position, place, normal);
-		if (m_options.edges && p.gate < acrossEdge && p.leverage < maxAcrossLeverage && p.weight > 0.0)
-			across.push_back({p.normal, patch.surface.origin - position, p.residual, p.weight * patch.purity});
+		if (m_options.edges && p.gate < acrossEdge && p.weight > 0.0 &&
+			p.leverage < maxAcrossLeverage)
+			across.push_back(
+				{p.normal,
+				 patch.surface.origin - position,
+				 p.residual,
+				 p.weight * patch.purity});
 		const double w = p.weight * p.gate * patch.purity;
 		if (w <= 0.0)
 			continue;

@@ -1,5 +1,5 @@
-// Overlapping local quadrics and, at every point, the blend of all that cover it: the mixed projection of
-// A09 section 4 with quadrics of hundreds of points and weights of inverse prediction variance.
+// Overlapping local quadrics and, at every point, the blend of all that cover it: the mixed projection
+// of A09 section 4 with quadrics of hundreds of points, weighted by inverse prediction variance.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -16,8 +16,8 @@ struct BlendInput {
 	std::vector<Index>  route;   // all points, near ones in turn: a cache then holds what they share
 };
 
-// Where the points are thought to be: tells frames and gates. Heights are always those of the input, so that
-// repeated passes do not shrink the surface.
+// Where the points are thought to be: tells frames and gates. Heights are always those of the input,
+// so that repeated passes do not shrink the surface.
 struct BlendGuide {
 	Eigen::Matrix3Xd positions, normals;
 };

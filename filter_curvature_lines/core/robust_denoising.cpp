@@ -29,7 +29,8 @@ constexpr double bentStep        = 1.12;
 constexpr double bentStart       = 0.8; // of the free radius
 constexpr double maxBentRadius   = 25.0;
 constexpr double bentTolerance   = 1.01;
-constexpr double bentTie         = 1.001; // scores that are the same: the wider patch has less variance
+// Scores as good as the same: the wider patch has less variance.
+constexpr double bentTie         = 1.001;
 constexpr double gatedStep       = 1.3;
 constexpr double maxGatedRadius  = 17.0;
 constexpr double gatedTolerance  = 1.015;
@@ -64,8 +65,8 @@ double quantile(std::vector<double> values, double share)
 	return *at;
 }
 
-// Side of the square that holds one point, averaged over some hundred neighbours: radii of patches that
-// overlap have to be alike.
+// Side of the square that holds one point, averaged over some hundred neighbours: radii of patches
+// that overlap have to be alike.
 std::vector<double> localSpacing(const PointCloud& cloud, const Progress& progress)
 {
 	constexpr Index      k = 16, averaged = 32, thinning = 8;
@@ -77,7 +78,8 @@ std::vector<double> localSpacing(const PointCloud& cloud, const Progress& progre
 		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
 		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
 	});
-	const Eigen::Matrix3Xd sample = cloud.positions.leftCols(std::max(std::min(n, averaged), n / thinning));
+	const Index            samples = std::max(std::min(n, averaged), n / thinning);
+	const Eigen::Matrix3Xd sample  = cloud.positions.leftCols(samples);
 	const NeighborSearch   sampleSearch(sample);
 	parallelFor(n, progress.sub(0.5, 1.0, stage), [&](Index i) {
 		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
@@ -323,8 +325,8 @@ double RobustDenoiser::pilotRadius(double widest) const
 	return std::max(m_firstRadius, std::min(radius, widest));
 }
 
-// A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth surface is
-// the best there is.
+// A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth
+// surface is the best there is.
 BlendGuide RobustDenoiser::edgePilot(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
@@ -384,8 +386,8 @@ Candidate RobustDenoiser::sharpCandidate(
 	return best;
 }
 
-// Share of the gated patches in a point: how much better they explain it and its neighbours on the same side
-// of an edge than smooth patches do.
+// Share of the gated patches in a point: how much better they explain it and its neighbours on the
+// same side of an edge than smooth patches do.
 std::vector<double> RobustDenoiser::sharpShare(
 	const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const
 {
@@ -423,7 +425,8 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 		const Index           i = targets[t];
 		const Eigen::Vector3d n = (1.0 - share[t]) * smooth.blend.normals.col(i) +
 								  share[t] * sharp.blend.normals.col(i);
-		smooth.blend.positions.col(i) += share[t] * (sharp.blend.positions.col(i) - smooth.blend.positions.col(i));
+		smooth.blend.positions.col(i) = (1.0 - share[t]) * smooth.blend.positions.col(i) +
+										share[t] * sharp.blend.positions.col(i);
 		if (n.norm() > 0.0)
 			smooth.blend.normals.col(i) = n.normalized();
 	}

@@ -1,5 +1,5 @@
-// Denoising by overlapping quadrics at a radius found from the data: the mixed projection of A09 section 4
-// alone, without the energy, and with the residual |X d - dn| of its curvature estimate as the edge gate.
+// Denoising by overlapping quadrics at a radius found from the data: the mixed projection of A09
+// section 4 alone, without the energy; the residual |X d - dn| of its curvature estimate gates edges.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

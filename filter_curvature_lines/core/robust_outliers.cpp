@@ -32,6 +32,10 @@ constexpr double acceptance       = 0.05; // a point is good if this share of it
 constexpr int    lonelyAcceptance = 3;    // and for a point by itself this number of votes
 constexpr double lonelyDistance   = 3.0;  // spacings to the 6th neighbour; in a right-angled corner it is at 2.8
 constexpr double isolatedShare    = 0.25; // of the usual number of votes
+// Outliers that fill a volume make voters of their own: sparse and, for a surface, noisy.
+constexpr double sparse           = 3.5; // times the usual distance to the 6th neighbour
+constexpr double noisy            = 3.0; // times the usual noise
+constexpr double thick            = 0.3; // noise over the spacing: not just a misfit
 constexpr double coherence        = 1.5;  // noise units within which votes speak of one surface
 constexpr int    meanShifts       = 4;
 constexpr double doubtfulShare    = 1.8 / 3.5; // of the sensitivity
@@ -323,14 +327,21 @@ void RobustVote::collectVoters()
 
 void RobustVote::rejectByVerdict(std::vector<char>& rejected)
 {
-	std::vector<double> counts;
+	if (size() == 0)
+		return;
+	std::vector<double> counts, crowding = m_crowding;
 	for (const Verdict& verdict : m_verdicts)
 		counts.push_back(verdict.votes);
-	const double fewest = counts.empty() ? 0.0 : isolatedShare * median(counts);
-	m_isolated          = 0;
+	const double fewest       = isolatedShare * median(counts);
+	const double noCrowd      = sparse * median(crowding);
+	const double tooMuchNoise = noisy * noise();
+	m_isolated                = 0;
 	for (Index i = 0; i < size(); ++i) {
 		Verdict&   verdict  = m_verdicts[i];
-		const bool isolated = verdict.votes == 0 || (verdict.lonely && verdict.votes < fewest);
+		const bool volume   = m_crowding[i] > noCrowd && verdict.noise > tooMuchNoise &&
+							verdict.noise > thick * verdict.spacing;
+		const bool isolated =
+			verdict.votes == 0 || volume || (verdict.lonely && verdict.votes < fewest);
 		if (isolated)
 			verdict.against = 1.0;
 		m_isolated += isolated;

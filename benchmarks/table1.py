@@ -58,7 +58,7 @@ def run(name: str) -> tuple[int, dict[str, float], float, float, float]:
     meshes = measures.layer(positions, normals)
     idle = peak_megabytes()
     wall, processor = time.perf_counter(), time.process_time()
-    values = meshes.generate_surface_reconstruction_curvature_aligned(method="Traced Lines")
+    values = meshes.generate_surface_reconstruction_curvature_aligned(method="Traced Lines", scale_mode="Paper")
     wall, processor = time.perf_counter() - wall, time.process_time() - processor
     seconds = dict.fromkeys(STAGES, 0.0)
     for key, value in values.items():

@@ -20,6 +20,7 @@ using Complex = std::complex<double>;
 
 constexpr double maxNormalCosine  = 0.5;  // 60 degrees: beyond, there is an edge between two points
 constexpr Index  maxPartners      = 32;   // of one point's own choice; bounds memory, not the reach
+constexpr double sureErrors       = 6.0;  // a direction whose k1 - k2 is this many errors counts half
 constexpr double startShift       = 1e-3; // keeps the linear start well-posed without a data term
 constexpr int    linearIterations = 200;
 
@@ -87,16 +88,18 @@ double transportAngle(const TangentFrame& a, const TangentFrame& b)
 	return -std::atan2(u.dot(b.v), u.dot(b.u));
 }
 
-// How well determined a direction is: 0 at an umbilic and 2 where k1 = -k2, in place of A09's |k1|
-// / |k2|, which is 1 at umbilics and unbounded on cylinders. The error keeps flat, noisy points
-// from counting.
-double anisotropy(const CurvatureField& field, Index i)
+// How well determined a direction is, 0 at an umbilic to 2, in place of A09's |k1| / |k2|, which is 1 at
+// umbilics and unbounded on cylinders. The standard deviation of a direction is that of k1 - k2 over
+// 2 |k1 - k2|. Where that is not known, the anisotropy has to do; it is 2 where k1 = -k2.
+double ownWeight(const CurvatureField& field, Index i)
 {
 	if (field.status[i] == PointStatus::TooFewNeighbors || field.status[i] == PointStatus::Invalid)
 		return 0.0;
 	const double k1 = field.k1[i], k2 = field.k2[i], error = field.error[i];
-	const double size = k1 * k1 + k2 * k2 + error * error;
-	return size > 0.0 ? (k1 - k2) * (k1 - k2) / size : 0.0;
+	const double square = (k1 - k2) * (k1 - k2);
+	const double doubt  = error > 0.0 ? 0.5 * sureErrors * sureErrors * error * error + 0.5 * square :
+										k1 * k1 + k2 * k2;
+	return doubt > 0.0 ? square / doubt : 0.0;
 }
 
 Eigen::VectorXcd doubledAngles(const Eigen::VectorXd& theta)
@@ -116,7 +119,7 @@ DirectionEnergy::DirectionEnergy(
 	for (Index i = 0; i < cloud.size(); ++i) {
 		const Eigen::Vector2d d = TangentFrame(cloud.normals.col(i)).toPlane(field.d1.col(i));
 		m_theta0[i]             = std::atan2(d.y(), d.x());
-		m_omega[i]              = anisotropy(field, i);
+		m_omega[i]              = ownWeight(field, i);
 	}
 	buildCoupling(cloud, field, progress);
 }

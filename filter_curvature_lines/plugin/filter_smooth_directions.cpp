@@ -74,10 +74,9 @@ FilterSpec smoothDirectionsFilter()
 		"Smooth Principal Directions",
 		"apply_curvature_direction_smoothing_per_vertex",
 		"Smooths the field of principal directions of a point cloud as a whole: each direction "
-		"stays "
-		"near its estimate where the curvature is anisotropic, and follows its neighbours where it "
-		"is not (near umbilics, on flat parts, under noise). Directions do not mix across sharp "
-		"edges." +
+		"stays near its estimate where k1 - k2 is well above its standard error, and follows its "
+		"neighbours where it is not (near umbilics, on flat parts, under noise). Directions do not "
+		"mix across sharp edges." +
 			helpInput +
 			"<br><br><b>Writes</b> PD1 and PD2 (and K1, K2 and the <tt>curv_*</tt> attributes that "
 			"go "

@@ -16,8 +16,8 @@ inline const QString helpInput =
 
 inline const QString helpConventions =
 	"<br><br><b>Conventions.</b> Convex is positive: a unit sphere with outward normals has "
-	"k1 = k2 = +1. k1 &gt;= k2 by signed value; PD1, PD2 and the normal are unit vectors at right "
-	"angles. Lengths are in the layer's own units and curvatures in 1/length; the layer's matrix "
+	"k1 = k2 = +1. k1 &gt;= k2 by signed value; PD1, PD2 and the normal of the fitted surface are "
+	"unit vectors at right angles. Lengths are in the layer's own units and curvatures in 1/length; the layer's matrix "
 	"is "
 	"not applied, so if it scales, freeze it first to get curvatures in world units. The result is "
 	"the same for any number of threads.";

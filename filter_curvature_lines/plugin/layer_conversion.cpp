@@ -248,9 +248,15 @@ bool carriesCurvature(
 		return false;
 	const VertexCurvatures values = perVertex(
 		points, estimate.prepared, estimate.field, std::vector<char>(estimate.field.size()));
+	// Estimates whose options differ may have the same curvatures and other statistical weights.
+	const auto confidence =
+		vcg::tri::Allocator<CMeshO>::FindPerVertexAttribute<Scalarm>(layer.cm, "curv_confidence");
+	const bool known = vcg::tri::Allocator<CMeshO>::IsValidHandle(layer.cm, confidence);
 	for (Index i = 0; i < points.size(); ++i) {
 		const CVertexO& vertex = layer.cm.vert[points.vertex[i]];
 		if (vertex.cK1() != toScalar(values.k1[i]) || vertex.cK2() != toScalar(values.k2[i]))
+			return false;
+		if (known && confidence[points.vertex[i]] != toScalar(values.confidence[i]))
 			return false;
 	}
 	return true;

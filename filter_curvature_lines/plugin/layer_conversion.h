@@ -71,7 +71,7 @@ void writeNormals(
 	const PreparedCloud&    prepared,
 	const Eigen::Matrix3Xd& normals);
 
-// Whether K1 and K2 (PD1 and PD2) on the layer are those the estimate would write.
+// Whether K1, K2 and curv_confidence (PD1 and PD2) on the layer are those the estimate would write.
 bool carriesCurvature(
 	const MeshModel& layer, const LayerPoints& points, const CurvatureEstimate& estimate);
 bool carriesDirections(

@@ -146,6 +146,26 @@ TEST(DirectionSmoothing, RemovesMostOfTheNoise)
 		}
 }
 
+// Directions known to be right stay, those known to be doubtful follow, whatever the curvatures are.
+TEST(DirectionSmoothing, StandardErrorDecidesWhoFollows)
+{
+	ExactCloud exact = noisyDirections("torus", 0.0);
+	exact.field.error.setConstant(1e-4);
+	std::vector<Index> turned;
+	for (Index i = 0; i < exact.cloud.size(); i += 10) {
+		turned.push_back(i);
+		exact.field.d1.col(i) = (exact.sample.d1.col(i) + 0.6 * exact.sample.d2.col(i)).normalized();
+	}
+	const auto sure = smoothed(exact, 0.5);
+	for (const Index i : turned)
+		exact.field.error[i] = exact.field.k1[i] - exact.field.k2[i];
+	const auto doubtful = smoothed(exact, 0.5);
+	for (const Index i : turned) { // by 31 degrees; some of them are neighbors
+		EXPECT_GT(lineAngle(sure.d1.col(i), exact.sample.d1.col(i)), 10.0 * degree);
+		EXPECT_LT(lineAngle(doubtful.d1.col(i), exact.sample.d1.col(i)), 9.0 * degree);
+	}
+}
+
 TEST(DirectionSmoothing, LeavesAnExactFieldAlone)
 {
 	const ExactCloud exact = noisyDirections("torus", 0.0);

@@ -110,13 +110,29 @@ TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
 	options.smoothDirections          = false;
 	const ReconstructionResult result = reconstruct(scan.prepared.cloud, options);
 	EXPECT_EQ(result.cloud.positions, scan.prepared.cloud.positions);
-	EXPECT_EQ(result.cloud.normals, scan.prepared.cloud.normals);
+	EXPECT_EQ(result.cloud.normals, result.field.correctedNormals);
+	EXPECT_LT((result.cloud.normals - scan.prepared.cloud.normals).colwise().norm().mean(), 0.01);
 	EXPECT_EQ(result.rmsMove, 0.0);
 	for (const char* stage : {"outliers", "denoising", "directions"})
 		EXPECT_EQ(result.seconds.count(stage), 0u) << stage;
 	for (const char* stage :
 		 {"neighborhoods", "curvature", "umbilics", "voronoi", "tracing", "mesh"})
 		EXPECT_EQ(result.seconds.count(stage), 1u) << stage;
+}
+
+// The published scale leaves the normals to denoising; the directions are tangent to them either way.
+TEST(Reconstruction, BothScaleModes)
+{
+	const Scan            scan = scanOf(torus(1000));
+	ReconstructionOptions options = quick();
+	for (const ScaleMode mode : {ScaleMode::Adaptive, ScaleMode::Paper}) {
+		options.curvature.scaleMode       = mode;
+		const ReconstructionResult result = reconstruct(scan.prepared.cloud, options);
+		EXPECT_EQ(result.cloud.normals == scan.prepared.cloud.normals, mode == ScaleMode::Paper);
+		EXPECT_LT((surfaceNormals(result.field) - result.cloud.normals).norm(), 1e-9);
+		EXPECT_EQ(result.mesh.topology.eulerCharacteristic, 0);
+		EXPECT_GT(result.mesh.topology.quads, 0.6 * result.mesh.topology.faces);
+	}
 }
 
 TEST(Reconstruction, DensityFollowsTheCloudUnlessGiven)

@@ -94,6 +94,17 @@ def test_smoothing_improves_directions_and_only_them(noisy_torus):
     np.testing.assert_allclose(frames @ frames.transpose(0, 2, 1), np.tile(np.eye(3), (len(smooth), 1, 1)), atol=1e-9)
 
 
+def test_an_estimate_with_other_options_is_not_taken_for_that_of_the_layer(noisy_torus):
+    meshes, other = layer_of(noisy_torus), layer_of(noisy_torus)
+    meshes.apply_filter(CURVATURE)
+    # the same curvatures, other statistical weights
+    other.apply_filter(CURVATURE, boundary_threshold=1.0)
+    before = attributes(meshes)
+    assert np.any(before["curv_confidence"] != attribute(other, "curv_confidence"))
+    assert meshes.apply_filter(SMOOTH)["curvature_reused"]
+    np.testing.assert_array_equal(before["curv_confidence"], attribute(meshes, "curv_confidence"))
+
+
 def test_smoothness_zero_keeps_the_directions(noisy_torus):
     meshes = layer_of(noisy_torus)
     meshes.apply_filter(CURVATURE)

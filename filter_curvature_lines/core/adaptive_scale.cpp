@@ -29,6 +29,8 @@ constexpr double trim            = 0.05;
 // A part of the cloud has a scale of its own if it is this large and its risk falls to this share.
 constexpr Index  minPoolPoints = 1280;
 constexpr Index  minPoolProbes = 32;
+constexpr Index  errorProbes = 24;
+constexpr double medianOfChi2 = 0.79;  // over the mean, of three squares
 constexpr Index  poolStride     = 4; // pools of neighbouring probes hardly differ
 constexpr Index  hopelessStride = 32;
 constexpr double hopelessRatio  = 16.0;
@@ -243,6 +245,24 @@ ScaleMixture mixtureOf(const RiskOfPool& pool)
 		mixture.variance += share * pool.variance()[c];
 	}
 	return mixture;
+}
+
+// Of the mixture's estimate at the probes `near` one place: scales are chosen for whole regions, but errors
+// differ within them.
+double varianceAround(
+	const std::vector<Trial>& trials, const std::vector<Index>& near, const ScaleMixture& mixture)
+{
+	double variance = 0.0;
+	for (const auto& [c, share] : mixture.weights) {
+		std::vector<double> terms;
+		for (const Index p : near)
+			if (trials[c].valid(p))
+				terms.push_back(
+					0.25 *
+					(trials[c].halves[0][p].shape - trials[c].halves[1][p].shape).squaredNorm());
+		variance += share * (terms.empty() ? mixture.variance : medianOf(terms) / medianOfChi2);
+	}
+	return variance;
 }
 
 double radiusHolding(const PointSample& sample, Index count)
@@ -468,6 +488,11 @@ ScaleSelection selectScales(
 			}
 		}
 	});
+	const NeighborSearch probeSearch(run.positions());
+	for (Index a = 0; a < asked.cols(); ++a)
+		if (whole.risk()[argmin(whole.risk())] < infinity)
+			mixtures[a].variance =
+				varianceAround(trials, probeSearch.nearest(asked.col(a), errorProbes), mixtures[a]);
 	selection.positions = asked;
 	selection.mixtures  = std::move(mixtures);
 	return selection;

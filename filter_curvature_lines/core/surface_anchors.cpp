@@ -28,6 +28,7 @@ constexpr double linkLength   = 2.0 * anchorSpacing; // radii
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
 constexpr double faceGain     = 0.9;  // and less than that of one surface
 constexpr double faceReach    = 1.5;                 // radii
+constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
 constexpr double smallestJump = 0.35;
 
 PointCloud block(const PointCloud& cloud, Index from, Index to)
@@ -319,6 +320,8 @@ std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vecto
 		// The surface as a quadric around the anchor, continued to the point.
 		const Eigen::Vector3d d      = position - e.position;
 		const Eigen::Vector3d turn   = e.shape * d;
+		if (turn.norm() > largestTurn) // bent too much to be known there
+			continue;
 		const Eigen::Vector3d normal = (e.normal + turn).normalized();
 		const double          weight = ballKernel(squared / (reach * reach)) + 1e-6;
 		auto face = std::find_if(faces.begin(), faces.end(), [&](const Face& f) {

@@ -89,6 +89,8 @@ void expectSound(const CurvatureField& f)
 	for (const Eigen::VectorXd* values : {&f.k1, &f.k2, &f.error, &f.radius, &f.confidence, &f.feature})
 		ASSERT_TRUE(values->allFinite() && values->size() == f.size());
 	ASSERT_TRUE(f.d1.allFinite() && f.d2.allFinite() && f.correctedNormals.allFinite());
+	if (f.size() == 0)
+		return;
 	EXPECT_GE((f.k1 - f.k2).minCoeff(), 0.0);
 	for (const Eigen::VectorXd* values : {&f.error, &f.radius, &f.confidence, &f.feature})
 		EXPECT_GE(values->minCoeff(), 0.0);

@@ -367,6 +367,8 @@ private:
 				scale.height,
 				probeIterations);
 			residuals[p] = starts[p].residual / scale.height.radius;
+			if (isOutlier(starts[p], m_positions.col(p), scale.height.radius))
+				starts[p].valid = false;
 		});
 		std::unique_ptr<const SurfaceAnchors> anchors;
 		if (scale.normalRadius > 0.0) {

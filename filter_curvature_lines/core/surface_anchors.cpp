@@ -29,6 +29,8 @@ constexpr double faceRatio    = 1.25; // noise levels that points may lie off th
 constexpr double faceGain     = 0.9;  // and less than that of one surface
 constexpr double faceReach    = 1.5;                 // radii
 constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
+constexpr double outlierRatio = 4.5;
+constexpr double outlierFloor = 0.02; // radii
 constexpr double smallestJump = 0.35;
 
 PointCloud block(const PointCloud& cloud, Index from, Index to)
@@ -76,6 +78,11 @@ std::vector<Index> thin(const PointSample& sample, double distance)
 			covered[j] = 1;
 	}
 	return kept;
+}
+
+bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, double radius)
+{
+	return (element.position - position).norm() > outlierRatio * element.residual + outlierFloor * radius;
 }
 
 SurfaceElement surfaceAt(
@@ -143,6 +150,8 @@ void SurfaceAnchors::fitAll(
 				sample.cloud.normals.col(kept[a]),
 				m_scale.height,
 				anchorIterations);
+		if (isOutlier(elements[a], position, m_scale.height.radius))
+			elements[a].valid = false;
 	});
 	for (const SurfaceElement& element : elements)
 		if (element.valid)

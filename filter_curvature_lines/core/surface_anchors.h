@@ -36,6 +36,9 @@ private:
 // Indices of points no two of which are nearer than `distance`, taken in order.
 std::vector<Index> thin(const PointSample& sample, double distance);
 
+// Whether a point this far off the surface fitted around it is no sample of it.
+bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, double radius);
+
 struct HeightScale {
 	double radius = 0.0; // length
 	int    degree = 2;   // of the height polynomial: 2 or 4

@@ -82,15 +82,21 @@ public:
 
 	SurfaceElement at(Index place, const Eigen::Vector3d& position, const Eigen::Vector3d& gate) const
 	{
+		SurfaceElement element;
 		if (m_anchors.nearEdge(position)) {
 			const SurfaceElement face = m_anchors.faceAt(position);
-			return face.valid ? interpolate(position, face.normal, m_anchors.jump()) : face;
+			if (face.valid)
+				element = interpolate(position, face.normal, m_anchors.jump());
 		}
-		if (m_direct) {
-			const SurfaceElement e = surfaceAt(m_subsets, place, position, gate, m_scale.height, 2);
-			return e.valid && m_scale.normalRadius > 0.0 ? m_anchors.normalField(e) : e;
+		else if (!m_direct) {
+			element = interpolate(position, gate, oppositeNormals);
 		}
-		return interpolate(position, gate, oppositeNormals);
+		if (!element.valid) {
+			element = surfaceAt(m_subsets, place, position, gate, m_scale.height, 2);
+			if (element.valid && m_scale.normalRadius > 0.0)
+				element = m_anchors.normalField(element);
+		}
+		return element;
 	}
 
 private:

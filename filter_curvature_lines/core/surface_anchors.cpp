@@ -24,7 +24,7 @@ constexpr double misfitFloor  = 0.004;
 constexpr double maxMisfits   = 0.75; // share of the anchors; more, and it is the scale that does not fit
 constexpr double minAgreement = 0.35; // share of the anchors within half a radius
 constexpr Index  minAnchors   = 30;
-constexpr double linkLength   = 2.0 * anchorSpacing; // radii
+constexpr double linkStretch  = 1.15;
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
 constexpr double faceGain     = 0.9;  // and less than that of one surface
 constexpr double faceReach    = 1.5;                 // radii
@@ -166,12 +166,25 @@ void SurfaceAnchors::fitAll(
 		}
 }
 
+// A little more than the distance to the eighth anchor: enough for the anchors of a face to hang together.
+double SurfaceAnchors::typicalLink() const
+{
+	std::vector<double> distances;
+	for (Index a = 0; a < std::min(size(), countedBalls); ++a) {
+		const auto near = m_originSearch->nearest(m_origins.col(a), 9);
+		distances.push_back((m_origins.col(near.back()) - m_origins.col(a)).norm());
+	}
+	std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
+	return linkStretch * distances[distances.size() / 2];
+}
+
 void SurfaceAnchors::flagMisfits()
 {
 	const Index n = size();
 	m_misfit.assign(n, 0);
 	if (n < minAnchors)
 		return;
+	m_linkLength = typicalLink();
 	std::vector<double> residuals;
 	for (const SurfaceElement& element : m_elements)
 		residuals.push_back(element.residual);
@@ -194,7 +207,8 @@ void SurfaceAnchors::flagMisfits()
 	for (Index a = 0; a < n; ++a) {
 		if (!high[a])
 			continue;
-		m_originSearch->within(m_origins.col(a), 0.5 * m_scale.height.radius, near);
+		m_originSearch->within(
+			m_origins.col(a), std::max(0.5 * m_scale.height.radius, m_linkLength), near);
 		const auto agree = std::count_if(near.begin(), near.end(), [&](Index b) { return high[b]; });
 		if (agree >= 3 && agree >= minAgreement * near.size()) {
 			m_misfit[a] = 1;
@@ -207,7 +221,7 @@ void SurfaceAnchors::link()
 {
 	std::vector<std::vector<Index>> rows(size());
 	parallelFor(size(), {}, [&](Index a) {
-		m_originSearch->within(m_origins.col(a), linkLength * m_scale.height.radius, rows[a]);
+		m_originSearch->within(m_origins.col(a), m_linkLength, rows[a]);
 		rows[a].erase(std::remove(rows[a].begin(), rows[a].end(), a), rows[a].end());
 	});
 	m_links = NeighborLists::fromRows(rows);

@@ -135,6 +135,7 @@ private:
 
 	void fitAll(
 		const PointSample& sample, const PointSubsets& subsets, const Zone& zone, const Progress& progress);
+	double typicalLink() const;
 	void flagMisfits();
 	void link();
 	void continueFaces(const PointSubsets& subsets);
@@ -152,6 +153,7 @@ private:
 	bool                            m_hasEdges = false;
 	double                          m_noise    = 0.0;
 	double                          m_jump     = 0.35;
+	double                          m_linkLength = 0.0;
 	std::vector<char>               m_misfit;  // an edge runs through the ball
 	std::vector<char>               m_atCut;   // a link of it was cut
 	NeighborLists                   m_links;

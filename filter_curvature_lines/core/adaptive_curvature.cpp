@@ -65,7 +65,7 @@ public:
 		double                                       directBelow) :
 			m_scale(scale), m_subsets(sample, scale.height.radius, fitCap),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
-			m_anchors(sample, m_subsets, scale, noise, Zone{&m_userSearch, 1.05 * scale.radius()}),
+			m_anchors(sample, m_subsets, scale, noise, Zone{&m_userSearch, 1.05 * scale.radius() + 2.0 * scale.height.radius}),
 			m_direct(scale.normalRadius == 0.0 || scale.height.radius < directBelow),
 			m_search(m_anchors.origins())
 	{
@@ -76,7 +76,8 @@ public:
 			return;
 		parallelFor(m_anchors.size(), {}, [&](Index a) {
 			if (Zone{&m_userSearch, blendRadius * m_scale.height.radius}.contains(m_anchors.origins().col(a)))
-				m_elements[a] = m_anchors.normalField(m_anchors.elements()[a]);
+				if (m_elements[a].valid)
+					m_elements[a] = m_anchors.normalField(m_anchors.elements()[a]);
 		});
 	}
 

@@ -21,6 +21,7 @@ constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box 
 constexpr double largestNormalRadius = 0.36;
 constexpr Index  fitCap       = 256;
 constexpr Index  noisePlaces  = 256;
+constexpr double smoothShare  = 1.0 / 3.0; // of the places, at least, no edge is near
 constexpr int    probeIterations = 3;
 constexpr double largestResidual = 0.2;  // radii, median over probes
 constexpr double clippedResidual = 0.15; // the least a ball within the noisy layer has
@@ -281,8 +282,7 @@ PointCloud slice(const PointCloud& cloud, Index from, Index to)
 	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
 }
 
-// The residual of quadrics in the smallest balls that reach beyond the noisy layer. A third of the places
-// at least is taken to be smooth.
+// The residual of quadrics in the smallest balls that reach beyond the noisy layer.
 double noiseOf(const PointSample& sample, double smallestRadius, int levels)
 {
 	double noise = infinity;
@@ -300,7 +300,7 @@ double noiseOf(const PointSample& sample, double smallestRadius, int levels)
 				probeIterations);
 			residuals[p] = element.valid ? element.residual : infinity;
 		});
-		const double residual = quantileOf(residuals, 1.0 / 3.0);
+		const double residual = quantileOf(residuals, smoothShare);
 		noise                 = std::min(noise, residual);
 		if (residual < clippedResidual * scale.radius)
 			return residual;
@@ -353,7 +353,7 @@ public:
 
 private:
 	std::vector<ProbeEstimate>
-	onHalf(const PointSample& half, const PointSubsets& subsets, const CurvatureScale& scale) const
+	onHalf(const PointSample& half, const PointSubsets& subsets, CurvatureScale& scale) const
 	{
 		const Index                 probes = static_cast<Index>(m_positions.cols());
 		std::vector<SurfaceElement> starts(probes);
@@ -370,6 +370,7 @@ private:
 			if (isOutlier(starts[p], m_positions.col(p), scale.height.radius))
 				starts[p].valid = false;
 		});
+		scale.usualResidual = quantileOf(residuals, smoothShare) * scale.height.radius;
 		std::unique_ptr<const SurfaceAnchors> anchors;
 		if (scale.normalRadius > 0.0) {
 			// What lies within the noise is judged by its residual: no need of anchors for that.

@@ -189,7 +189,7 @@ bool LocalSurfaceFitter::normalStep(
 		const double          along = other.normal.dot(frame.n);
 		const Eigen::Vector3d d     = (other.position - center) * scale;
 		const double          w     = ballKernel(d.squaredNorm());
-		if (along < 0.0 || w <= 0.0)
+		if (!other.valid || along < 0.0 || w <= 0.0)
 			continue;
 		m_normals.add(
 			d.dot(frame.u),

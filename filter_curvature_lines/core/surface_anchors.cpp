@@ -21,7 +21,6 @@ constexpr Index  maxSubsets      = 64;
 constexpr double misfitRatio  = 0.15;
 constexpr double misfitErrors = 2.0; // standard errors of a residual
 constexpr double misfitFloor  = 0.004;
-constexpr double maxMisfits   = 0.75; // share of the anchors; more, and it is the scale that does not fit
 constexpr double minAgreement = 0.35; // share of the anchors within half a radius
 constexpr Index  minAnchors   = 30;
 constexpr double linkStretch  = 1.15;
@@ -185,23 +184,16 @@ void SurfaceAnchors::flagMisfits()
 	if (n < minAnchors)
 		return;
 	m_linkLength = typicalLink();
-	std::vector<double> residuals;
-	for (const SurfaceElement& element : m_elements)
-		residuals.push_back(element.residual);
-	std::nth_element(residuals.begin(), residuals.begin() + n / 3, residuals.end());
-	const double      usual = residuals[n / 3];
 	std::vector<char> high(n);
-	Index             count = 0;
 	for (Index a = 0; a < n; ++a) {
 		// The residual of few samples scatters; the kernel leaves about half of them.
 		const double freedom = std::max(
 			2.0, 0.5 * m_elements[a].samples - monomialCount(m_scale.height.degree));
 		const double ratio = 1.0 + std::max(misfitRatio, misfitErrors / std::sqrt(2.0 * freedom));
-		count += high[a] =
-			m_elements[a].residual > ratio * usual + misfitFloor * m_scale.height.radius;
+		high[a] =
+			m_elements[a].residual >
+			ratio * m_scale.usualResidual + misfitFloor * m_scale.height.radius;
 	}
-	if (count > maxMisfits * n)
-		return;
 	// An edge passes through the balls of many neighbours, chance through that of one.
 	std::vector<Index> near;
 	for (Index a = 0; a < n; ++a) {
@@ -278,12 +270,12 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 			misfit < faceGain * m_elements[a].residual)
 			continued[a] = faceAt(position);
 	});
-	// Misfits that no edge explains count only next to one, as at a corner.
+	// What an edge spoilt and no face explains, as in a corner, is not used.
 	for (Index a = 0; a < size(); ++a) {
 		const NeighborLists::Row row = m_links[a];
-		if (!continued[a].valid &&
-			std::none_of(row.begin(), row.end(), [&](Index b) { return continued[b].valid; }))
-			m_misfit[a] = 0;
+		if (m_misfit[a] && !continued[a].valid &&
+			std::any_of(row.begin(), row.end(), [&](Index b) { return continued[b].valid; }))
+			m_elements[a].valid = false;
 	}
 	m_hasEdges = false;
 	for (Index a = 0; a < size(); ++a)
@@ -300,6 +292,8 @@ void SurfaceAnchors::cutLinks()
 	m_atCut.assign(size(), 0);
 	for (Index a = 0; a < size(); ++a)
 		for (const Index b : m_links[a]) {
+			if (!m_elements[b].valid)
+				continue;
 			if (!(m_misfit[a] || m_misfit[b]) || jumpBetween(a, b) < m_jump)
 				rows[a].push_back(b);
 			else
@@ -468,7 +462,7 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 	thread_local std::vector<char> inBall;
 	inBall.resize(std::max<std::size_t>(inBall.size(), size()), 0);
 	for (const Index a : near) {
-		if (m_misfit[a])
+		if (m_misfit[a] || !m_elements[a].valid)
 			continue;
 		inBall[a] = 1;
 		const double distance = unit * (m_elements[a].position - start.position).squaredNorm() +

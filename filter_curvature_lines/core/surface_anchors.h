@@ -69,6 +69,7 @@ struct CurvatureScale {
 	double      normalRadius = 0.0; // length
 	int         family       = 0;   // scales of one family differ in size only
 	int         level        = 0;
+	double      usualResidual = 0.0; // of the heights, where the surface is smooth (length)
 
 	double radius() const { return std::max(height.radius, normalRadius); }
 };

@@ -13,16 +13,20 @@ namespace curvature_lines {
 
 namespace {
 
+constexpr const char* progressLabel = "Estimating curvature";
+
 constexpr Index  minPoints     = 8;
 constexpr Index  gateNeighbors = 60;
 constexpr double minAgreement  = 0.25;
 constexpr Index  fitCap        = 256;
 constexpr double blendRadius   = 0.5;  // of the height radius
+constexpr double sameFace        = 0.8; // dot product of normals
 constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
 
 // Normals that tell the side of the surface and no more: the mean of the given ones around, of those that
 // agree with the point's own, unless nearly all oppose it.
-Eigen::Matrix3Xd gateNormals(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
+Eigen::Matrix3Xd gateNormals(
+	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
 {
 	Eigen::Matrix3Xd gate(3, cloud.size());
 	parallelFor(cloud.size(), progress, [&](Index i) {
@@ -65,7 +69,12 @@ public:
 		double                                       directBelow) :
 			m_scale(scale), m_subsets(sample, scale.height.radius, fitCap),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
-			m_anchors(sample, m_subsets, scale, noise, Zone{&m_userSearch, 1.05 * scale.radius() + 2.0 * scale.height.radius}),
+			m_anchors(
+				sample,
+				m_subsets,
+				scale,
+				noise,
+				Zone{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
 			m_direct(scale.normalRadius == 0.0 || scale.height.radius < directBelow),
 			m_search(m_anchors.origins())
 	{
@@ -81,11 +90,13 @@ public:
 		});
 	}
 
-	SurfaceElement at(Index place, const Eigen::Vector3d& position, const Eigen::Vector3d& gate) const
+	// `edge` is told where one is near.
+	SurfaceElement
+	at(Index place, const Eigen::Vector3d& position, const Eigen::Vector3d& gate, EdgeNearby& edge) const
 	{
 		SurfaceElement element;
 		if (m_anchors.nearEdge(position)) {
-			const SurfaceElement face = m_anchors.faceAt(position);
+			const SurfaceElement face = m_anchors.faceAt(position, &edge);
 			if (face.valid)
 				element = interpolate(position, face.normal, m_anchors.jump());
 		}
@@ -169,6 +180,13 @@ private:
 	std::vector<SurfaceElement> m_elements;
 };
 
+// 1 on a right-angled edge, falling to 0 within the smallest ball's radius.
+double featureStrength(const EdgeNearby& edge, double reach)
+{
+	const double sharpness = std::min(1.0, 2.0 * edge.angle / double(EIGEN_PI));
+	return sharpness * ballKernel(edge.distance * edge.distance / (reach * reach));
+}
+
 // From the probes around each point, so that scales change gradually.
 std::vector<ScaleMixture> mixturesAtPoints(const PointCloud& cloud, const ScaleSelection& selection)
 {
@@ -213,8 +231,9 @@ AdaptiveSurface adaptiveSurface(
 	if (cloud.size() < minPoints)
 		return surface;
 	const std::vector<Index> order = shuffledOrder(cloud.positions);
-	const PointSample        sample(reordered(cloud, gateNormals(cloud, search, progress.sub(0, 0.05, "")), order));
-	const ScaleSelection     selection = selectScales(sample, options, progress.sub(0.05, 0.7, ""));
+	const Eigen::Matrix3Xd   gate  = gateNormals(cloud, search, progress.sub(0.0, 0.05, progressLabel));
+	const PointSample        sample(reordered(cloud, gate, order));
+	const ScaleSelection     selection = selectScales(sample, options, progress.sub(0.05, 0.7, progressLabel));
 	const Index              n         = cloud.size();
 
 	const auto mixtures = mixturesAtPoints(sample.cloud, selection);
@@ -228,14 +247,27 @@ AdaptiveSurface adaptiveSurface(
 		if (users.empty())
 			continue;
 		const CurvatureScale& scale = selection.scales[s];
+		progress.report(0.7 + 0.3 * s / double(selection.scales.size()));
 		const ScaleField field(
 			sample, scale, users, selection.noise, 1.5 * selection.smallestRadius);
 		parallelFor(static_cast<Index>(users.size()), {}, [&](Index u) {
 			const auto [i, share]        = users[u];
-			const SurfaceElement element = field.at(i, sample.cloud.positions.col(i), sample.cloud.normals.col(i));
+			EdgeNearby           edge;
+			const SurfaceElement element =
+				field.at(i, sample.cloud.positions.col(i), sample.cloud.normals.col(i), edge);
 			if (!element.valid)
 				return;
 			SurfaceElement& mixed = surface.elements[order[i]];
+			if (shares[i] > 0.0 && mixed.normal.normalized().dot(element.normal) < sameFace) {
+				if (share < shares[i]) // scales that take different faces at an edge do not mix
+					return;
+				mixed                     = SurfaceElement();
+				mixed.normal              = Eigen::Vector3d::Zero();
+				surface.radius[order[i]]  = 0.0;
+				surface.feature[order[i]] = 0.0;
+				shares[i]                 = 0.0;
+			}
+			surface.feature[order[i]] += share * featureStrength(edge, selection.smallestRadius);
 			mixed.position += share * element.position;
 			mixed.normal += share * element.normal;
 			mixed.shape += share * element.shape;
@@ -252,6 +284,7 @@ AdaptiveSurface adaptiveSurface(
 		mixed.shape /= shares[i];
 		mixed.valid = mixed.normal.allFinite();
 		surface.radius[order[i]] /= shares[i];
+		surface.feature[order[i]] /= shares[i];
 		surface.variance[order[i]] = mixtures[i].variance;
 	});
 	return surface;
@@ -264,7 +297,8 @@ constexpr double agreementCosine = 0.99985; // of one degree
 constexpr double smallestSigma = 1e-3;
 
 // Principal curvatures and directions of one element.
-void setPrincipal(const SurfaceElement& element, const Eigen::Vector3d& given, Index i, CurvatureField& field)
+void setPrincipal(
+	const SurfaceElement& element, const Eigen::Vector3d& given, Index i, CurvatureField& field)
 {
 	const TangentFrame          frame(element.normal);
 	Eigen::Matrix<double, 3, 2> tangents;
@@ -350,7 +384,8 @@ CurvatureField adaptiveCurvature(
 	const Progress&             progress)
 {
 	const Index           n       = cloud.size();
-	const AdaptiveSurface surface = adaptiveSurface(cloud, search, options, progress.sub(0.0, 0.95, "Estimating curvature"));
+	const AdaptiveSurface surface =
+		adaptiveSurface(cloud, search, options, progress.sub(0.0, 0.95, progressLabel));
 	CurvatureField        field;
 	for (auto* values : {&field.k1, &field.k2, &field.error, &field.confidence})
 		values->setZero(n);

@@ -76,15 +76,18 @@ def check_mesh(meshes, report):
 # Direction smoothing
 
 
-def test_smoothing_improves_directions_and_only_them(noisy_torus):
+# Adaptive directions are means over large regions already: little is left to gain, nothing may be lost.
+@pytest.mark.parametrize(("scale_mode", "allowed"), [("Paper", 0.95), ("Adaptive", 1.05)])
+def test_smoothing_improves_directions_and_only_them(noisy_torus, scale_mode, allowed):
     meshes = layer_of(noisy_torus)
-    meshes.apply_filter(CURVATURE)
+    meshes.apply_filter(CURVATURE, scale_mode=scale_mode)
     before, rough = attributes(meshes), meshes.current_mesh().vertex_curvature_principal_dir1_matrix()
     surface = np.cross(rough, meshes.current_mesh().vertex_curvature_principal_dir2_matrix())
     report = check_report(meshes.apply_filter(SMOOTH), "iterations")
     smooth = meshes.current_mesh().vertex_curvature_principal_dir1_matrix()
     clear = noisy_torus["k1"] - noisy_torus["k2"] > 1.0
-    assert rms(axis_angle(smooth, noisy_torus["d1"])[clear]) < rms(axis_angle(rough, noisy_torus["d1"])[clear])
+    error_before, error_after = (rms(axis_angle(d, noisy_torus["d1"])[clear]) for d in (rough, smooth))
+    assert error_after < allowed * error_before
     for name in ("curv_k1", "curv_k2", "curv_confidence"):
         np.testing.assert_array_equal(before[name], attribute(meshes, name))
     assert report["curvature_reused"] and report["energy_final"] < report["energy_initial"]

@@ -126,7 +126,9 @@ VertexCurvatures perVertex(
 		}
 		else {
 			// A duplicate seen from the other side: its curvatures change sign and so trade places.
-			const bool            flipped  = normal.dot(prepared.cloud.normals.col(r)) < 0.0;
+			// (A point's own normal may be wrong; its neighbours' tell the side.)
+			const Index           source   = prepared.source[r];
+			const bool            flipped  = source != i && normal.dot(unitNormal(points, source)) < 0.0;
 			const Eigen::Vector3d surface  = onSideOf(prepared.cloud.normals.col(r), normal);
 			const bool            accurate = normal.dot(surface) > agreementCosine;
 			tangentPair(

@@ -1,9 +1,4 @@
-// Crossings of the lines of curvature (A09 section 5.2). The lines do not meet in space, so the
-// paper projects both to a tangent plane per Voronoi cell, which loses or doubles crossings at the
-// walls, and no rule on walls holds where 3-D cells form slivers. Here a line crosses another where
-// its polyline pierces the other's normal strip: the ruled band swept by the normals along it. The
-// band is one connected surface and the orientation predicates are exact, so whether lines cross is
-// decided once and consistently across every joint; geometry only places the vertex.
+// Crossings of the lines of curvature (A09 section 5.2), by exact predicates on normal strips.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -31,6 +26,11 @@ struct LineIntersections {
 	Index reordered = 0; // neighbours along a line exchanged so that three lines fit on a surface
 };
 
+// The lines do not meet in space, so the paper projects both to a tangent plane per Voronoi cell, which
+// loses or doubles crossings at the walls, and no rule on walls holds where 3-D cells form slivers. Here a
+// line crosses another where its polyline pierces the other's normal strip: the ruled band swept by the
+// normals along it. The band is one connected surface and the orientation predicates are exact, so whether
+// lines cross is decided once and consistently across every joint; geometry only places the vertex.
 LineIntersections
 intersectLines(const VoronoiCells& cells, const LineNetwork& lines, const Progress& progress = {});
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "quantile.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines {
@@ -18,7 +19,6 @@ constexpr const char* progressLabel = "Estimating curvature";
 constexpr Index  minPoints     = 8;
 constexpr Index  gateNeighbors = 60;
 constexpr double minAgreement  = 0.25;
-constexpr Index  fitCap        = 256;
 constexpr double blendRadius   = 0.5;  // of the height radius
 constexpr double sameFace        = 0.8; // dot product of normals
 constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
@@ -67,7 +67,7 @@ public:
 		const std::vector<std::pair<Index, double>>& users,
 		double                                       noise,
 		double                                       directBelow) :
-			m_scale(scale), m_subsets(sample, scale.height.radius, fitCap),
+			m_scale(scale), m_subsets(sample, scale.height.radius),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
 			m_anchors(
 				sample,
@@ -193,7 +193,8 @@ std::vector<ScaleMixture> mixturesAtPoints(const PointCloud& cloud, const ScaleS
 	const NeighborSearch      probes(selection.positions);
 	std::vector<ScaleMixture> mixtures(cloud.size());
 	parallelFor(cloud.size(), {}, [&](Index i) {
-		std::vector<double> share(selection.scales.size(), 0.0);
+		thread_local std::vector<double> share;
+		share.assign(selection.scales.size(), 0.0);
 		const Eigen::Vector3d position = cloud.positions.col(i);
 		const auto            near     = probes.nearest(position, 5);
 		const double reach = (selection.positions.col(near.back()) - position).squaredNorm();
@@ -294,7 +295,9 @@ namespace {
 
 constexpr double weightReach   = 3.0;    // local spacings, as the published operating region
 constexpr double agreementCosine = 0.99985; // of one degree
-constexpr double smallestSigma = 1e-3;
+constexpr double smallestSigma = 3e-3;
+// The estimate smooths its normals, so the median is small, and the published cut would cut smooth parts.
+constexpr double looseness = 3.0;
 
 // Principal curvatures and directions of one element.
 void setPrincipal(
@@ -345,33 +348,23 @@ void setWeights(
 	std::vector<double> all;
 	for (const auto& row : residuals)
 		all.insert(all.end(), row.begin(), row.end());
-	double median = 0.0;
-	if (!all.empty()) {
-		std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
-		median = all[all.size() / 2];
-	}
 	const RobustCurvatureOptions published;
-	const double                 sigma = std::max(smallestSigma, published.sigmaFactor * median);
+	const double median = all.empty() ? 0.0 : medianInPlace(all);
+	const double sigma  = std::max(smallestSigma, looseness * published.sigmaFactor * median);
 	for (Index i = 0; i < n; ++i) {
 		std::size_t kept = 0;
 		for (std::size_t k = 0; k < rows[i].size(); ++k) {
 			const double t = residuals[i][k] / sigma;
-			// A cut at two sigma, as published, would cut where the normals are smooth but the median is small.
-			if (t > published.cut * 3.0)
+			if (t > published.cut)
 				continue;
 			rows[i][kept]      = rows[i][k];
-			residuals[i][kept] = 0.5 * gemanMcClureWeight(t / 3.0);
+			residuals[i][kept] = 0.5 * gemanMcClureWeight(t);
 			++kept;
 		}
 		rows[i].resize(kept);
 		residuals[i].resize(kept);
 	}
-	field.weights.neighbors = NeighborLists::fromRows(rows);
-	for (Index i = 0; i < n; ++i) { // C_j = sum_i W_i[j] (A09 section 5.1), always in this order
-		field.weights.values.insert(field.weights.values.end(), residuals[i].begin(), residuals[i].end());
-		for (std::size_t k = 0; k < rows[i].size(); ++k)
-			field.confidence[rows[i][k]] += residuals[i][k];
-	}
+	adoptWeights(rows, residuals, field);
 }
 
 } // namespace

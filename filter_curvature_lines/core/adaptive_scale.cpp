@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+#include "quantile.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -19,7 +21,6 @@ constexpr Index  smallestCount = 14; // of a tiny cloud
 constexpr double ladderStep   = 1.3;
 constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
 constexpr double largestNormalRadius = 0.36;
-constexpr Index  fitCap       = 256;
 constexpr Index  noisePlaces  = 256;
 constexpr double smoothShare  = 1.0 / 3.0; // of the places, at least, no edge is near
 constexpr int    probeIterations = 3;
@@ -87,9 +88,7 @@ double quantileOf(std::vector<double> values, double share)
 {
 	if (values.empty())
 		return infinity;
-	const auto at = values.begin() + static_cast<std::size_t>(share * values.size());
-	std::nth_element(values.begin(), at, values.end());
-	return *at;
+	return quantileInPlace(values, share);
 }
 
 double medianOf(std::vector<double> values)
@@ -277,18 +276,13 @@ double radiusHolding(const PointSample& sample, Index count)
 	return medianOf(radii);
 }
 
-PointCloud slice(const PointCloud& cloud, Index from, Index to)
-{
-	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
-}
-
 // The residual of quadrics in the smallest balls that reach beyond the noisy layer.
 double noiseOf(const PointSample& sample, double smallestRadius, int levels)
 {
 	double noise = infinity;
 	for (int level = 0; level < levels; ++level) {
 		const HeightScale   scale{smallestRadius * std::pow(ladderStep, level), 2};
-		const PointSubsets  subsets(sample, scale.radius, fitCap);
+		const PointSubsets  subsets(sample, scale.radius);
 		std::vector<double> residuals(std::min<Index>(sample.cloud.size(), noisePlaces));
 		parallelFor(static_cast<Index>(residuals.size()), {}, [&](Index p) {
 			const SurfaceElement element = surfaceAt(
@@ -312,8 +306,8 @@ double noiseOf(const PointSample& sample, double smallestRadius, int levels)
 class ScaleTrials {
 public:
 	ScaleTrials(const PointSample& sample, Index probes, double noise) :
-			m_sample(sample), m_first(slice(sample.cloud, 0, sample.cloud.size() / 2)),
-			m_second(slice(sample.cloud, sample.cloud.size() / 2, sample.cloud.size())),
+			m_sample(sample), m_first(blockOf(sample.cloud, 0, sample.cloud.size() / 2)),
+			m_second(blockOf(sample.cloud, sample.cloud.size() / 2, sample.cloud.size())),
 			m_positions(sample.cloud.positions.leftCols(probes)), m_noise(noise)
 	{
 	}
@@ -329,7 +323,7 @@ public:
 					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level}, {}});
 		for (int h = 0; h < 2; ++h) {
 			const PointSample& half = h == 0 ? m_first : m_second;
-			const PointSubsets subsets(half, radius, fitCap);
+			const PointSubsets subsets(half, radius);
 			for (Trial& trial : here)
 				trial.halves[h] = onHalf(half, subsets, trial.scale);
 		}

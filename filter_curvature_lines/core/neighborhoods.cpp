@@ -9,6 +9,8 @@
 
 #include <nanoflann.hpp>
 
+#include "quantile.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -237,22 +239,13 @@ int longestEmptyRun(const std::array<Index, sliceCount>& slots)
 	return std::min(longest, sliceCount);
 }
 
-double medianInPlace(std::vector<double>& values)
-{
-	if (values.empty())
-		return 0.0;
-	const auto middle = values.begin() + values.size() / 2;
-	std::nth_element(values.begin(), middle, values.end());
-	return *middle;
-}
-
 double positiveMedian(const std::vector<double>& values)
 {
 	std::vector<double> positive;
 	for (const double v : values)
 		if (v > 0.0)
 			positive.push_back(v);
-	return medianInPlace(positive);
+	return positive.empty() ? 0.0 : medianInPlace(positive);
 }
 
 } // namespace
@@ -353,7 +346,7 @@ MinimumNeighborhoods minimumNeighborhoods(
 		local.clear();
 		for (Index c = 0; c < rowSize; ++c)
 			local.push_back(freeSpacing[row[c]]);
-		const double scale = std::max(median, medianInPlace(local));
+		const double scale = local.empty() ? median : std::max(median, medianInPlace(local));
 		const auto   slots = closestPerSlice(
 			  cloud, i, sameSheet(cloud, i, row, row + rowSize), options.boundaryThreshold * scale);
 		for (const Index j : slots)

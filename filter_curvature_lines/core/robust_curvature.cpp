@@ -268,6 +268,21 @@ double curvedness(double k1, double k2)
 	return std::hypot(k1, k2) / std::sqrt(2.0);
 }
 
+void adoptWeights(
+	const std::vector<std::vector<Index>>&  rows,
+	const std::vector<std::vector<double>>& weights,
+	CurvatureField&                         field)
+{
+	field.weights.neighbors = NeighborLists::fromRows(rows);
+	field.weights.values.reserve(field.weights.neighbors.indices.size());
+	for (std::size_t i = 0; i < rows.size(); ++i) { // always in this order
+		field.weights.values.insert(
+			field.weights.values.end(), weights[i].begin(), weights[i].end());
+		for (std::size_t k = 0; k < rows[i].size(); ++k)
+			field.confidence[rows[i][k]] += weights[i][k];
+	}
+}
+
 CurvatureField robustCurvature(
 	const PointCloud&             cloud,
 	const NeighborSearch&         search,
@@ -309,14 +324,7 @@ CurvatureField robustCurvature(
 		iterations[i]                 = estimate.iterations;
 	});
 
-	field.weights.neighbors = NeighborLists::fromRows(rows);
-	field.weights.values.reserve(field.weights.neighbors.indices.size());
-	for (Index i = 0; i < n; ++i) { // C_j = sum_i W_i[j] (A09 section 5.1), always in this order
-		field.weights.values.insert(
-			field.weights.values.end(), weights[i].begin(), weights[i].end());
-		for (std::size_t k = 0; k < rows[i].size(); ++k)
-			field.confidence[rows[i][k]] += weights[i][k];
-	}
+	adoptWeights(rows, weights, field);
 	field.iterations = n > 0 ? *std::max_element(iterations.begin(), iterations.end()) : 0;
 	return field;
 }

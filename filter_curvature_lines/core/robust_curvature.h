@@ -59,6 +59,13 @@ CurvatureField robustCurvature(
 	const RobustCurvatureOptions& options  = {},
 	const Progress&               progress = {});
 
+// Rows of statistical weights built in parallel, and the confidence they add up to,
+// C_j = sum_i W_i[j] (A09 section 5.1), into a field whose confidence is 0.
+void adoptWeights(
+	const std::vector<std::vector<Index>>&  rows,
+	const std::vector<std::vector<double>>& weights,
+	CurvatureField&                         field);
+
 // Geman-McClure cost and weight of a normalised residual t = r / sigma (A09 fig. 5b, c).
 double gemanMcClureCost(double t);
 double gemanMcClureWeight(double t);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "patch_blend.h"
+#include "quantile.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines {
@@ -60,9 +61,7 @@ constexpr double sharpGain       = 0.3; // above it, it is an edge
 
 double quantile(std::vector<double> values, double share)
 {
-	const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size() - 1));
-	std::nth_element(values.begin(), at, values.end());
-	return *at;
+	return quantileInPlace(values, share);
 }
 
 // Side of the square that holds one point, averaged over some hundred neighbours: radii of patches

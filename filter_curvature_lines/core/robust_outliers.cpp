@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "outlier_voter.h"
+#include "quantile.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines {
@@ -44,13 +45,6 @@ constexpr double groupSensitivity = 2.0; // sensitivities, for the mean of a gro
 constexpr int    spreadPasses     = 3;
 constexpr Index  minRejectedPeers = 3;
 constexpr double rejectedPeers    = 0.4;
-
-double median(std::vector<double>& values)
-{
-	const auto middle = values.begin() + values.size() / 2;
-	std::nth_element(values.begin(), middle, values.end());
-	return *middle;
-}
 
 // A displacement to a voter's surface: unlike heights, displacements need no agreement about the sign of
 // normals.
@@ -304,7 +298,7 @@ void RobustVote::measureNoise(const Progress& progress)
 		near.clear();
 		for (const Index k : search.nearest(voter.surface.origin, around))
 			near.push_back(deviations[k]);
-		voter.noise = near.empty() ? voter.deviation() : median(near);
+		voter.noise = near.empty() ? voter.deviation() : medianInPlace(near);
 		voter.bent  = voter.deviation() > bentOverAnEdge * voter.noise;
 	});
 }
@@ -332,8 +326,8 @@ void RobustVote::rejectByVerdict(std::vector<char>& rejected)
 	std::vector<double> counts, crowding = m_crowding;
 	for (const Verdict& verdict : m_verdicts)
 		counts.push_back(verdict.votes);
-	const double fewest       = isolatedShare * median(counts);
-	const double noCrowd      = sparse * median(crowding);
+	const double fewest       = isolatedShare * medianInPlace(counts);
+	const double noCrowd      = sparse * medianInPlace(crowding);
 	const double tooMuchNoise = noisy * noise();
 	m_isolated                = 0;
 	for (Index i = 0; i < size(); ++i) {
@@ -428,7 +422,7 @@ double RobustVote::noise() const
 	for (const OutlierVoter& voter : m_voters)
 		if (voter.surface.valid)
 			noise.push_back(voter.noise);
-	return noise.empty() ? 0.0 : median(noise);
+	return noise.empty() ? 0.0 : medianInPlace(noise);
 }
 
 OutlierResult RobustVote::result() const

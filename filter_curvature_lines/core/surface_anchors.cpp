@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include "quantile.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -15,6 +17,7 @@ namespace {
 constexpr double anchorSpacing   = 0.18; // in radii
 constexpr int    anchorIterations = 2;
 constexpr Index  countedBalls    = 40;
+constexpr double samplesPerBall  = 256.0;
 constexpr Index  maxSubsets      = 64;
 
 // Residuals this much above that of a good fit, plus this many radii, do not come from noise.
@@ -32,11 +35,6 @@ constexpr double outlierRatio = 4.5;
 constexpr double outlierFloor = 0.02; // radii
 constexpr double smallestJump = 0.35;
 
-PointCloud block(const PointCloud& cloud, Index from, Index to)
-{
-	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
-}
-
 std::vector<Index>& scratchList()
 {
 	thread_local std::vector<Index> list;
@@ -45,19 +43,25 @@ std::vector<Index>& scratchList()
 
 } // namespace
 
-PointSubsets::PointSubsets(const PointSample& sample, double radius, Index cap) : m_whole(sample)
+PointCloud blockOf(const PointCloud& cloud, Index from, Index to)
+{
+	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
+}
+
+PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(sample)
 {
 	const Index        n = sample.cloud.size();
-	std::vector<Index> counts, found;
+	std::vector<double> counts;
+	std::vector<Index>  found;
 	for (Index i = 0; i < std::min(n, countedBalls); ++i) {
 		sample.search.within(sample.cloud.positions.col(i), radius, found);
-		counts.push_back(static_cast<Index>(found.size()));
+		counts.push_back(double(found.size()));
 	}
-	std::nth_element(counts.begin(), counts.begin() + counts.size() / 2, counts.end());
-	const Index subsets = std::clamp<Index>(counts[counts.size() / 2] / cap, 1, maxSubsets);
+	const auto subsets =
+		std::clamp(static_cast<Index>(medianInPlace(counts) / samplesPerBall), Index(1), maxSubsets);
 	if (subsets > 1)
 		for (Index s = 0; s < subsets; ++s)
-			m_subsets.push_back(std::make_unique<const PointSample>(block(
+			m_subsets.push_back(std::make_unique<const PointSample>(blockOf(
 				sample.cloud,
 				static_cast<Index>(std::int64_t(n) * s / subsets),
 				static_cast<Index>(std::int64_t(n) * (s + 1) / subsets))));
@@ -119,10 +123,9 @@ SurfaceAnchors::SurfaceAnchors(
 	const PointSubsets&   subsets,
 	const CurvatureScale& scale,
 	double                noise,
-	const Zone&           zone,
-	const Progress&       progress) : m_scale(scale), m_noise(noise)
+	const Zone&           zone) : m_scale(scale), m_noise(noise)
 {
-	fitAll(sample, subsets, zone, progress);
+	fitAll(sample, subsets, zone);
 	m_originSearch = std::make_unique<NeighborSearch>(m_origins);
 	flagMisfits();
 	if (m_hasEdges) {
@@ -135,11 +138,11 @@ SurfaceAnchors::SurfaceAnchors(
 }
 
 void SurfaceAnchors::fitAll(
-	const PointSample& sample, const PointSubsets& subsets, const Zone& zone, const Progress& progress)
+	const PointSample& sample, const PointSubsets& subsets, const Zone& zone)
 {
 	const std::vector<Index>    kept = thin(sample, anchorSpacing * m_scale.height.radius);
 	std::vector<SurfaceElement> elements(kept.size());
-	parallelFor(static_cast<Index>(kept.size()), progress, [&](Index a) {
+	parallelFor(static_cast<Index>(kept.size()), {}, [&](Index a) {
 		const Eigen::Vector3d position = sample.cloud.positions.col(kept[a]);
 		if (zone.contains(position))
 			elements[a] = surfaceAt(
@@ -173,8 +176,7 @@ double SurfaceAnchors::typicalLink() const
 		const auto near = m_originSearch->nearest(m_origins.col(a), 9);
 		distances.push_back((m_origins.col(near.back()) - m_origins.col(a)).norm());
 	}
-	std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
-	return linkStretch * distances[distances.size() / 2];
+	return linkStretch * medianInPlace(distances);
 }
 
 void SurfaceAnchors::flagMisfits()
@@ -224,8 +226,7 @@ void SurfaceAnchors::link()
 				jumps.push_back(jumpBetween(a, b));
 	if (jumps.empty())
 		return;
-	std::nth_element(jumps.begin(), jumps.begin() + jumps.size() / 2, jumps.end());
-	m_jump = std::max(smallestJump, 4.0 * jumps[jumps.size() / 2]);
+	m_jump = std::max(smallestJump, 4.0 * medianInPlace(jumps));
 }
 
 // What is left of the difference of two normals after the bend the elements themselves predict.
@@ -262,13 +263,13 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 			return;
 		// A bend that is merely too tight for the radius is no edge: faces continued into it do not fit.
 		const Eigen::Vector3d   position = m_origins.col(a);
-		const std::vector<Face> faces    = facesAround(position);
+		std::vector<Face>       faces    = facesAround(position);
 		if (faces.size() < 2)
 			return;
 		const double misfit = misfitOfFaces(subsets[a], position, faces);
 		if (misfit < faceRatio * m_noise + misfitFloor * m_scale.height.radius &&
 			misfit < faceGain * m_elements[a].residual)
-			continued[a] = faceAt(position);
+			continued[a] = nearestFace(position, std::move(faces), nullptr);
 	});
 	// What an edge spoilt and no face explains, as in a corner, is not used.
 	for (Index a = 0; a < size(); ++a) {
@@ -410,8 +411,13 @@ double SurfaceAnchors::misfitOfFaces(
 
 SurfaceElement SurfaceAnchors::faceAt(const Eigen::Vector3d& position, EdgeNearby* edge) const
 {
-	std::vector<Face> faces = facesAround(position);
-	SurfaceElement    result;
+	return nearestFace(position, facesAround(position), edge);
+}
+
+SurfaceElement SurfaceAnchors::nearestFace(
+	const Eigen::Vector3d& position, std::vector<Face> faces, EdgeNearby* edge) const
+{
+	SurfaceElement result;
 	if (faces.empty())
 		return result;
 	const Meeting meeting = meetingOf(faces);
@@ -426,16 +432,11 @@ SurfaceElement SurfaceAnchors::faceAt(const Eigen::Vector3d& position, EdgeNearb
 	result.valid    = true;
 	if (edge && faces.size() > 1) {
 		const Face&           other  = faces[1];
-		const Eigen::Vector3d along  = own.normal.cross(other.normal);
 		const double          cosine = own.normal.dot(other.normal);
-		const double          sine   = std::max(along.norm(), 1e-9);
+		const double          sine   = std::max(own.normal.cross(other.normal).norm(), 1e-9);
 		// From the foot point on the own plane to the other plane, within the own one.
-		const double below = other.height - own.height * cosine;
-		edge->angle        = std::atan2(sine, cosine);
-		edge->distance     = std::abs(below) / sine;
-		edge->direction    = along / sine;
-		edge->position =
-			result.position - below / (sine * sine) * (other.normal - cosine * own.normal);
+		edge->angle    = std::atan2(sine, cosine);
+		edge->distance = std::abs(other.height - own.height * cosine) / sine;
 	}
 	return result;
 }
@@ -472,7 +473,8 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 			seed    = a;
 		}
 	}
-	std::vector<Index> reached;
+	thread_local std::vector<Index> reached;
+	reached.clear();
 	if (seed >= 0) {
 		reached.push_back(seed);
 		inBall[seed] = 0;

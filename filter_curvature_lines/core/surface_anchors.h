@@ -16,12 +16,15 @@ struct PointSample {
 	const NeighborSearch search;
 };
 
-// A cloud cut into random subsets so that a ball of `radius` holds about `cap` points of each. Fits at
-// neighbouring places take different subsets: none uses more than `cap` points, all use every point.
+// Columns [from, to): of a shuffled cloud, a random sample.
+PointCloud blockOf(const PointCloud& cloud, Index from, Index to);
+
+// A cloud cut into random subsets so that a ball of `radius` holds about 256 points of each. Fits at
+// neighbouring places take different subsets: no fit uses many more, together they use every point.
 class PointSubsets {
 public:
 	// `sample` must be shuffled (shuffledOrder) and outlive the subsets.
-	PointSubsets(const PointSample& sample, double radius, Index cap);
+	PointSubsets(const PointSample& sample, double radius);
 
 	const PointSample& operator[](Index place) const
 	{
@@ -76,10 +79,8 @@ struct CurvatureScale {
 
 // A place where two faces meet, seen from a point on one of them.
 struct EdgeNearby {
-	double          angle    = 0.0; // between the faces' normals, 0: no edge
-	double          distance = 0.0; // of the point from the edge, length
-	Eigen::Vector3d position = Eigen::Vector3d::Zero(); // on the edge, nearest to the point
-	Eigen::Vector3d direction = Eigen::Vector3d::Zero(); // along the edge, unit
+	double angle    = 0.0; // between the faces' normals, 0: no edge
+	double distance = 0.0; // of the point from the edge, length
 };
 
 // The anchors of one scale. Where a height polynomial does not fit although it does elsewhere, a sharp edge
@@ -92,8 +93,7 @@ public:
 		const PointSubsets&   subsets,
 		const CurvatureScale& scale,
 		double                noise, // of the heights (length)
-		const Zone&           zone     = {},
-		const Progress&       progress = {});
+		const Zone&           zone = {});
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
 	const std::vector<SurfaceElement>& elements() const { return m_elements; }
@@ -128,14 +128,15 @@ private:
 	std::vector<Face> facesAround(const Eigen::Vector3d& position) const;
 	static Meeting    meetingOf(const std::vector<Face>& faces);
 	static double     nearness(Meeting meeting, double height); // the smallest is the nearest
+	SurfaceElement    nearestFace(
+		   const Eigen::Vector3d& position, std::vector<Face> faces, EdgeNearby* edge) const;
 	// RMS distance of the points around from the nearest of the faces.
 	double misfitOfFaces(
 		const PointSample&       sample,
 		const Eigen::Vector3d&   position,
 		const std::vector<Face>& faces) const;
 
-	void fitAll(
-		const PointSample& sample, const PointSubsets& subsets, const Zone& zone, const Progress& progress);
+	void   fitAll(const PointSample& sample, const PointSubsets& subsets, const Zone& zone);
 	double typicalLink() const;
 	void flagMisfits();
 	void link();

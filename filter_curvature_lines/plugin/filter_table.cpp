@@ -14,6 +14,7 @@ const std::vector<FilterSpec>& filterTable()
 		traceLinesFilter(),
 		quadMeshFilter(),
 		reconstructionFilter(),
+		mWeightedCurvatureFilter(),
 	};
 	return table;
 }

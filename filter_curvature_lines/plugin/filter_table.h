@@ -42,5 +42,6 @@ FilterSpec smoothDirectionsFilter();
 FilterSpec traceLinesFilter();
 FilterSpec quadMeshFilter();
 FilterSpec reconstructionFilter();
+FilterSpec mWeightedCurvatureFilter();
 
 } // namespace curvature_lines

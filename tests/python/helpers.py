@@ -19,7 +19,8 @@ SMOOTH = "apply_curvature_direction_smoothing_per_vertex"
 TRACE = "generate_curvature_lines"
 MESH = "generate_curvature_aligned_quad_mesh"
 PIPELINE = "generate_surface_reconstruction_curvature_aligned"
-ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE]
+M_WEIGHTED = "compute_curvature_m_weighted_per_vertex"
+ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE, M_WEIGHTED]
 
 OK, BOUNDARY, TOO_FEW, UMBILIC, ISOLATED, INVALID = range(6)
 ATTRIBUTES = ["curv_k1", "curv_k2", "curv_confidence", "curv_error", "curv_scale", "curv_feature", "curv_status"]

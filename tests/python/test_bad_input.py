@@ -10,6 +10,7 @@ from helpers import (
     CURVATURE,
     DENOISE,
     INVALID,
+    M_WEIGHTED,
     MESH,
     ON_CLOUDS,
     OUTLIERS,
@@ -120,6 +121,11 @@ OUT_OF_RANGE = [
     (PIPELINE, "epsilon", [-1.0, 0.6]),
     (PIPELINE, "estimate_normals", [3]),
     (PIPELINE, "scale_mode", [2]),
+    (M_WEIGHTED, "bandwidth", [0.0, -1.0, 21.0]),
+    (M_WEIGHTED, "exponent", [0, 11]),
+    (M_WEIGHTED, "neighbors", [5, 1001]),
+    (M_WEIGHTED, "weighting", [-1, 3]),
+    (M_WEIGHTED, "scalar", [7]),
 ]
 
 

@@ -5,13 +5,26 @@ import xml.etree.ElementTree as ElementTree
 import pymeshlab
 import pytest
 
-from helpers import CURVATURE, DENOISE, MESH, OUTLIERS, PIPELINE, SMOOTH, TRACE, attribute, layer_of, snapshot
+from helpers import (
+    CURVATURE,
+    DENOISE,
+    M_WEIGHTED,
+    MESH,
+    OUTLIERS,
+    PIPELINE,
+    SMOOTH,
+    TRACE,
+    attribute,
+    layer_of,
+    snapshot,
+)
 
 CHAINS = {
     "curvature": [(CURVATURE, {"scalar": "Shape Index", "correct_normals": True})],
     "published_curvature": [
         (CURVATURE, {"scale_mode": "Paper", "scalar": "Shape Index", "region_scale": 4.0, "correct_normals": True})
     ],
+    "m_weighted_curvature": [(M_WEIGHTED, {"bandwidth": 3.0, "weighting": "Gaussian", "scalar": "K1", "colorize": False})],
     "outliers": [(OUTLIERS, {"mode": "Paper", "vote_threshold": 0.6, "delete_selected": True})],
     "denoising": [(DENOISE, {"iterations": 5, "energy": "Squared", "neighbors": "Nearest"})],
     "lines_and_mesh": [(SMOOTH, {"alpha": 0.7}), (TRACE, {"target_vertices": 120}), (MESH, {"triangulate": True})],
@@ -62,6 +75,7 @@ NAMES = {
     TRACE: "Trace Lines of Curvature",
     MESH: "Build Curvature-Aligned Quad Mesh",
     PIPELINE: "Surface Reconstruction: Curvature-Aligned Quads",
+    M_WEIGHTED: "M-Weighted Curvature (Euler Least Squares)",
 }
 PARAMETERS = {
     CURVATURE: {"scale_mode": 0, "region_scale": 3.0, "max_iterations": 30, "feature_gate": True, "correct_normals": False, "scalar": 0,
@@ -74,6 +88,7 @@ PARAMETERS = {
     MESH: {"triangulate": False, "split_concave": True, "close_holes": False},
     PIPELINE: {"target_vertices": 0, "triangulate": False, "close_holes": False, "reject_outliers": True,
                "denoise": True, "smooth_directions": True, "estimate_normals": 0, "scale_mode": 0, "keep_intermediate_layers": False},
+    M_WEIGHTED: {"bandwidth": 2.5, "exponent": 2, "neighbors": 60, "weighting": 0, "scalar": 0, "colorize": True, "umbilic_ratio": 0.95},
 }
 
 

@@ -1,0 +1,107 @@
+// Attributes, quality and colour of a curvature estimate, and its counts.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_output.h"
+
+#include "core/curvature_colors.h"
+
+namespace curvature_lines {
+
+namespace {
+
+double scalarOf(CurvatureScalar scalar, const VertexCurvatures& values, Index i)
+{
+	const double k1 = values.k1[i], k2 = values.k2[i];
+	switch (scalar) {
+	case CurvatureScalar::Mean:
+		return 0.5 * (k1 + k2);
+	case CurvatureScalar::Gaussian:
+		return k1 * k2;
+	case CurvatureScalar::K1:
+		return k1;
+	case CurvatureScalar::K2:
+		return k2;
+	case CurvatureScalar::Curvedness:
+		return curvedness(k1, k2);
+	case CurvatureScalar::ShapeIndex:
+		return shapeIndex(k1, k2);
+	case CurvatureScalar::Confidence:
+		return values.confidence[i];
+	}
+	return 0.0;
+}
+
+} // namespace
+
+void addCurvatureOutput(RichParameterList& list)
+{
+	list.addParam(RichEnum(
+		"scalar",
+		0,
+		QStringList() << "Mean"
+					  << "Gaussian"
+					  << "K1"
+					  << "K2"
+					  << "Curvedness"
+					  << "Shape Index"
+					  << "Confidence",
+		"Quality",
+		"What is stored as vertex quality.<ul>"
+		"<li><b>Mean</b>: (k1 + k2) / 2</li>"
+		"<li><b>Gaussian</b>: k1 k2</li>"
+		"<li><b>K1</b>, <b>K2</b>: the larger and the smaller principal curvature</li>"
+		"<li><b>Curvedness</b>: sqrt((k1^2 + k2^2) / 2)</li>"
+		"<li><b>Shape Index</b>: +1 convex cap, 0 saddle, -1 concave cup</li>"
+		"<li><b>Confidence</b>: how much the neighbours' estimates rely on the point</li></ul>"));
+	list.addParam(RichBool(
+		"colorize",
+		true,
+		"Colour the points",
+		"With Mean, by both principal curvatures at once: convex red, saddle green, concave blue, "
+		"flat white. With the other scalars, by MeshLab's quality ramp between the 10th and the "
+		"90th percentile."));
+}
+
+CurvatureOutput curvatureOutput(const Parameters& parameters)
+{
+	return {static_cast<CurvatureScalar>(parameters.choice("scalar")), parameters.flag("colorize")};
+}
+
+void writeCurvatureOutput(
+	MeshModel&              layer,
+	const LayerPoints&      points,
+	double                  diagonal,
+	const VertexCurvatures& values,
+	const CurvatureOutput&  output)
+{
+	Eigen::VectorXd quality(points.size());
+	for (Index i = 0; i < points.size(); ++i)
+		quality[i] = scalarOf(output.scalar, values, i);
+	writeCurvature(layer, points, values);
+	writeQuality(layer, points, quality);
+	if (output.colorize && output.scalar == CurvatureScalar::Mean)
+		writeColors(layer, points, curvatureColors(values.k1, values.k2, 0.5 * diagonal));
+	else if (output.colorize)
+		writeColorRamp(layer, points, values.status);
+}
+
+void reportCurvature(
+	FilterResults&              results,
+	const PreparedCloud&        prepared,
+	const MinimumNeighborhoods& minimum,
+	const VertexCurvatures&     values)
+{
+	std::map<PointStatus, Index> counts;
+	for (const PointStatus status : values.status)
+		++counts[status];
+	results.count("points", static_cast<Index>(values.status.size()));
+	results.count("ok", counts[PointStatus::Ok]);
+	results.count("boundary", counts[PointStatus::Boundary]);
+	results.count("too_few_neighbors", counts[PointStatus::TooFewNeighbors]);
+	results.count("umbilic", counts[PointStatus::Umbilic]);
+	results.count("isolated", counts[PointStatus::Isolated]);
+	results.count("invalid", counts[PointStatus::Invalid]);
+	results.count("duplicates", prepared.duplicates);
+	results.real("median_spacing", minimum.medianSpacing * prepared.diagonal);
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,34 @@
+// How a curvature filter shows its estimate: attributes, vertex quality, colour, and counts of points per status.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "filter_results.h"
+#include "parameters.h"
+
+namespace curvature_lines {
+
+enum class CurvatureScalar { Mean, Gaussian, K1, K2, Curvedness, ShapeIndex, Confidence };
+
+struct CurvatureOutput {
+	CurvatureScalar scalar   = CurvatureScalar::Mean;
+	bool            colorize = true;
+};
+
+void            addCurvatureOutput(RichParameterList& list);
+CurvatureOutput curvatureOutput(const Parameters& parameters);
+
+// K1, K2, PD1, PD2, attributes, quality and colour.
+void writeCurvatureOutput(
+	MeshModel&              layer,
+	const LayerPoints&      points,
+	double                  diagonal, // of the cloud, model units
+	const VertexCurvatures& values,
+	const CurvatureOutput&  output);
+
+void reportCurvature(
+	FilterResults&              results,
+	const PreparedCloud&        prepared,
+	const MinimumNeighborhoods& minimum,
+	const VertexCurvatures&     values);
+
+} // namespace curvature_lines

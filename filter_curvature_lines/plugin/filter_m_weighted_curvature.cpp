@@ -1,0 +1,116 @@
+// M-Weighted Curvature (Euler Least Squares): core/m_weighted_curvature on a layer.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_output.h"
+#include "filter_table.h"
+#include "help_text.h"
+
+#include "core/m_weighted_curvature.h"
+
+namespace curvature_lines {
+
+namespace {
+
+RichParameterList parameters(const MeshDocument&)
+{
+	const MWeightedCurvatureOptions defaults;
+	RichParameterList               list;
+	list.addParam(RichFloat(
+		"bandwidth",
+		Scalarm(defaults.bandwidth),
+		"Bandwidth",
+		"Length h of the weights, in local point spacings (0.5 to 20). The weight is largest at h "
+		"times the root of the exponent. Larger resists more noise and blurs more detail."));
+	list.addParam(RichInt(
+		"exponent",
+		defaults.exponent,
+		"Exponent",
+		"With M weights, the power xi of x^(2 xi) exp(-x^2 / h^2) (1 to 10): the larger, the less "
+		"the closest points count."));
+	list.addParam(RichInt(
+		"neighbors",
+		defaults.neighbors,
+		"Neighbours",
+		"Nearest points looked at around each point (6 to 1000)."));
+	list.addParam(RichEnum(
+		"weighting",
+		static_cast<int>(defaults.weighting),
+		QStringList() << "M"
+					  << "Gaussian"
+					  << "Unweighted",
+		"Weights",
+		"How much a neighbour counts by its distance x.<ul>"
+		"<li><b>M</b>: x^(2 xi) exp(-x^2 / h^2), little where close, as published</li>"
+		"<li><b>Gaussian</b>: exp(-x^2 / h^2), for comparison: noise makes close points wild</li>"
+		"<li><b>Unweighted</b>: all neighbours alike</li></ul>"));
+	addCurvatureOutput(list);
+	addUmbilicRatio(list);
+	return list;
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	const Parameters&         parameters = context.parameters;
+	MWeightedCurvatureOptions options;
+	options.bandwidth = parameters.real("bandwidth", 0.5, 20.0);
+	options.exponent  = parameters.integer("exponent", 1, 10);
+	options.neighbors = parameters.integer("neighbors", 6, 1000);
+	options.weighting = static_cast<MWeightedCurvatureOptions::Weighting>(parameters.choice("weighting"));
+	const CurvatureOutput output = curvatureOutput(parameters);
+	UmbilicOptions        umbilicOptions;
+	umbilicOptions.ratio = umbilicRatio(parameters);
+
+	MeshModel&                 layer  = currentLayer(context.document);
+	const LayerPoints          points = readOrientedPoints(layer);
+	FilterResults              results;
+	Stopwatch                  total;
+	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
+	const NeighborSearch       search(prepared.cloud.positions);
+	const MinimumNeighborhoods minimum = minimumNeighborhoods(
+		prepared.cloud, search, {}, context.progress.sub(0.0, 0.4, "Finding neighborhoods"));
+	const CurvatureField field = mWeightedCurvature(
+		prepared.cloud, search, minimum, options, context.progress.sub(0.4, 1.0, "Estimating curvature"));
+	const VertexCurvatures values = perVertex(
+		points,
+		prepared,
+		field,
+		findUmbilics(prepared.cloud, field, minimum, umbilicOptions).umbilic);
+
+	writeCurvatureOutput(layer, points, prepared.diagonal, values, output);
+	reportCurvature(results, prepared, minimum, values);
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec mWeightedCurvatureFilter()
+{
+	return {
+		"M-Weighted Curvature (Euler Least Squares)",
+		"compute_curvature_m_weighted_per_vertex",
+		"Principal curvatures and directions of a point cloud from the directional curvatures "
+		"towards each point's neighbours, which Euler's theorem ties together: one small least "
+		"squares per point. Neighbours count most at a distance: close ones carry the noise, far "
+		"ones do not belong. Fast and simple, for clouds with good normals and little noise; "
+		"<i>Robust Curvature</i> finds its scale by itself and withstands noise, outliers and "
+		"wrong normals." +
+			helpInput +
+			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); vertex "
+			"quality and colour; and the vertex attributes <tt>curv_k1</tt>, <tt>curv_k2</tt>, "
+			"<tt>curv_confidence</tt>, <tt>curv_error</tt>, <tt>curv_scale</tt>, "
+			"<tt>curv_feature</tt> (always 0) and <tt>curv_status</tt>, as <i>Robust Curvature</i> "
+			"does. PD1 and PD2 are tangent to the layer's normals. Filters that go on from curvature "
+			"use the robust one." +
+			helpConventions +
+			"<br><br>See:<br><i>E. Tejada, J. P. Gois, L. G. Nonato, A. Castelo, T. Ertl.</i><br>"
+			"<b>\"Curvature-driven modeling and rendering of point-based surfaces\"</b><br>"
+			"SIBGRAPI 2006.",
+		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::VertexColoring,
+		FilterPlugin::SINGLE_MESH,
+		MeshModel::MM_NONE,
+		MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR | MeshModel::MM_VERTCURVDIR,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

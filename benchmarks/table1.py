@@ -83,8 +83,8 @@ def main() -> None:
         rows.append([f"{points} points", "ours", *cells, f"{wall:.2f}", f"{processor:.2f}", f"{memory:.0f}"])
     body = (
         "Seconds per stage. Published: Kalogerakis et al. 2009, Table 1, one 3 GHz Pentium IV. Ours: the same method "
-        "(`Traced Lines`) on one thread; curvature is estimated before and after denoising, and corrects the normals as "
-        "it goes; smoothing of directions, umbilics and Voronoi cells count as extraction of lines. Where `processor` is well "
+        "(`Traced Lines`) on one thread, with robust outlier rejection and denoising, which need no curvature; it is "
+        "estimated once, after them, and corrects the normals as it goes; smoothing of directions, umbilics and Voronoi cells count as extraction of lines. Where `processor` is well "
         "below `total`, the machine was busy with other work and all stages took that much less of it. Memory is the peak "
         "above that of the host with the cloud loaded. Clouds: torus and helicoid with 0.5 % noise, cube without, all "
         "with true normals; the cow is PyMeshLab's sample after two Loop subdivisions.\n\n"

@@ -1,62 +1,46 @@
-// Point positions from corrected normals by global energy minimisation (A09 section 4.2; R07 section 4.2).
+// Denoising: the projection onto overlapping quadrics of a size found from the data, or the published
+// energy of corrected normals (A09 section 4.2).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "neighborhoods.h"
+#include "energy_denoising.h"
+#include "robust_denoising.h"
 
 namespace curvature_lines {
 
 struct DenoisingOptions {
-	enum class Energy { SquareRoot, Squared };   // A09's sqrt of the norm, or its square
-	enum class Optimizer { LBFGSB, PolakRibiere }; // A09, R07
-	enum class Neighbors { SixSectors, Nearest };  // the two readings of A09's "K = 6 nearest"
-	Energy    energy     = Energy::SquareRoot;
-	Optimizer optimizer  = Optimizer::LBFGSB;
-	Neighbors neighbors  = Neighbors::SixSectors;
-	Index     iterations = 100;
-	double    delta      = 0.1; // smooths the square root at 0: (e^2 + delta^2)^(1/4), e = |n - s nhat|
-	double    maxMove    = 2.0; // trust box per coordinate, in median spacings
+	enum class Method { Robust, Paper };
+	Method                 method = Method::Robust;
+	RobustDenoisingOptions robust;
+	EnergyDenoisingOptions paper;
 };
 
 struct DenoisingResult {
-	Eigen::Matrix3Xd positions; // 3 x N
+	Eigen::Matrix3Xd positions, normals; // 3 x N
+	double           rmsMove = 0.0, maxMove = 0.0; // lengths
+	// Robust: what was used.
+	double noise  = 0.0; // standard deviation of the positions, a length
+	double radius = 0.0; // in local spacings
+	// Paper
 	Index  iterations    = 0;
 	double initialEnergy = 0.0, finalEnergy = 0.0;
-	double rmsMove       = 0.0; // length
 };
 
-// Normals are held constant: pass the corrected ones in cloud.normals.
+// What the energy is made of.
+struct CorrectedNormals {
+	const Eigen::Matrix3Xd&     normals; // of the robust curvature estimate
+	const NeighborSearch&       search;
+	const MinimumNeighborhoods& minimum;
+};
+
+// Estimates curvature. Only Method::Paper asks for it: the robust method looks at positions, and at the
+// cloud's normals for the side of the surface they are on.
+using NormalCorrection = std::function<CorrectedNormals(const Progress&)>;
+
 DenoisingResult denoise(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
-	const DenoisingOptions&     options  = {},
-	const Progress&             progress = {});
-
-// The energy and its analytic gradient, exposed so that tests can difference it. Degenerate
-// triangles (sine of the angle at p below 0.05 at the start) take no part; orientation signs s are
-// those of `start`.
-class DenoisingEnergy {
-public:
-	DenoisingEnergy(
-		const PointCloud& start, const NeighborLists& neighbors, const DenoisingOptions& options);
-
-	// x: 3N stacked positions; gradient: resized to 3N. Returns E. Same result for any number of
-	// threads. Not const: the work space is kept between calls.
-	double operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gradient);
-
-private:
-	double evaluateFan(Index i, const Eigen::VectorXd& x);
-
-	DenoisingOptions         m_options;
-	Eigen::Matrix3Xd         m_normals;
-	NeighborLists            m_fans;      // the neighbours q of each point p; every two make a triangle
-	std::vector<std::size_t> m_firstSign; // fan -> where its triangles begin in m_signs
-	std::vector<signed char> m_signs;     // s of each triangle, 0 if it is degenerate
-	Eigen::VectorXd          m_minCross;  // fan -> floor of |(q - p) x (r - p)|
-	NeighborLists            m_uses;      // point -> its places in m_fans.indices, for a race-free gradient
-	Eigen::Matrix3Xd         m_pulls;     // gradient of a fan by each of its neighbours
-	Eigen::VectorXd          m_fanEnergies;
-};
+	const PointCloud&       cloud,
+	const NormalCorrection& correction,
+	const DenoisingOptions& options  = {},
+	const Progress&         progress = {});
 
 } // namespace curvature_lines

@@ -96,27 +96,29 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 			around->minimum,
 			options.curvature,
 			part.sub(0.1, 1.0, "Estimating curvature"));
-		if (options.curvature.scaleMode == ScaleMode::Adaptive) {
-			result.cloud.normals = result.field.correctedNormals;
-			makeTangent(result.cloud.normals, result.field);
-		}
 		clock.book("curvature");
 	};
-	estimate(progress.sub(0.2, 0.35, ""));
-
 	if (options.denoise) {
-		result.cloud.normals    = result.field.correctedNormals;
 		DenoisingResult cleaned = denoise(
 			result.cloud,
-			around->search,
-			around->minimum,
+			[&](const Progress& part) {
+				estimate(part);
+				return CorrectedNormals{
+					result.field.correctedNormals, around->search, around->minimum};
+			},
 			options.denoising,
-			progress.sub(0.35, 0.55, "Denoising"));
+			progress.sub(0.2, 0.5, "Denoising"));
 		around.reset();
-		result.cloud.positions = std::move(cleaned.positions);
-		result.rmsMove         = cleaned.rmsMove;
+		result.cloud   = {std::move(cleaned.positions), std::move(cleaned.normals)};
+		result.rmsMove = cleaned.rmsMove;
+		if (cleaned.noise > 0.0)
+			result.noise = cleaned.noise;
 		clock.book("denoising");
-		estimate(progress.sub(0.55, 0.65, ""));
+	}
+	estimate(progress.sub(0.5, 0.65, ""));
+	if (options.curvature.scaleMode == ScaleMode::Adaptive) {
+		result.cloud.normals = result.field.correctedNormals;
+		makeTangent(result.cloud.normals, result.field);
 	}
 
 	if (options.smoothDirections) {

@@ -1,4 +1,6 @@
 // The whole pipeline (A09 fig. 1): outliers out, points denoised, curvature, directions, lines, mesh.
+// A09 estimates curvature first; robust outlier rejection and denoising need none, so that it is estimated
+// once, on clean points.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -32,12 +34,12 @@ struct ReconstructionOptions {
 struct ReconstructionResult {
 	std::vector<char>  outlier; // per input point
 	std::vector<Index> kept;    // input index of each point of `cloud`
-	PointCloud         cloud;   // cleaned; with the normals of the fitted surface unless scaleMode is Paper
+	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
 	UmbilicRegions     umbilics;
 	LineNetwork        lines;
 	QuadMeshResult     mesh;
-	double             noise = 0.0; // standard deviation of heights, when outliers were looked for
+	double             noise = 0.0; // standard deviation of heights, if robustly cleaned of outliers or noise
 	double             rmsMove = 0.0;      // by denoising
 	std::map<std::string, double> seconds; // per stage: outliers, neighborhoods, curvature, …
 };

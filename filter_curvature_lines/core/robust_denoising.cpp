@@ -458,10 +458,8 @@ RobustDenoisingResult denoiseRobustly(
 	const PointCloud& cloud, const RobustDenoisingOptions& options, const Progress& progress)
 {
 	if (cloud.size() < fewestPoints)
-		return {cloud.positions, cloud.normals, options.noise, options.radius, 0.0};
-	RobustDenoisingResult result = RobustDenoiser(cloud, options).run(progress);
-	result.rmsMove = std::sqrt((result.positions - cloud.positions).squaredNorm() / cloud.size());
-	return result;
+		return {cloud.positions, cloud.normals, options.noise, options.radius};
+	return RobustDenoiser(cloud, options).run(progress);
 }
 
 } // namespace curvature_lines

@@ -1,6 +1,6 @@
 // Denoise Point Cloud by Robust Curvature: core/denoising on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
+#include <functional>
 
 #include "filter_table.h"
 #include "help_text.h"
@@ -17,99 +17,144 @@ RichParameterList parameters(const MeshDocument&)
 	RichParameterList      list;
 	list.addParam(RichEnum(
 		"method",
-		0,
-		QStringList() << "Paper",
+		static_cast<int>(defaults.method),
+		QStringList() << "Robust"
+					  << "Paper",
 		"Method",
 		"How the points are moved.<ul>"
+		"<li><b>Robust</b>: onto the surfaces their neighbours fit, at a radius found from the "
+		"cloud; "
+		"edges stay sharp. Needs no curvature</li>"
 		"<li><b>Paper</b>: all at once, so that the triangles of each point with its neighbours "
-		"agree with the corrected normals (a global energy)</li></ul>"));
+		"agree with the corrected normals (a global energy, as published)</li></ul>"));
+	list.addParam(RichFloat(
+		"noise",
+		Scalarm(defaults.robust.noise),
+		"Noise",
+		"Robust: standard deviation of the points from the surface, a length in the layer's units "
+		"(0 = automatic, at most half the bounding-box diagonal)."));
+	list.addParam(RichFloat(
+		"radius",
+		Scalarm(defaults.robust.radius),
+		"Radius",
+		"Robust: size of the fitted pieces of surface, in local point spacings (0 = automatic, at "
+		"least 2.5 and at most 100). Larger ones remove more noise and more detail.",
+		true));
 	list.addParam(RichInt(
 		"iterations",
-		defaults.iterations,
+		defaults.paper.iterations,
 		"Iterations",
-		"Largest number of iterations of the optimiser (1 to 10000)."));
+		"Paper: largest number of iterations of the optimiser (1 to 10000)."));
 	list.addParam(RichEnum(
 		"energy",
-		static_cast<int>(defaults.energy),
+		static_cast<int>(defaults.paper.energy),
 		QStringList() << "Square Root"
 					  << "Squared",
 		"Energy",
-		"Power of the disagreement between triangle and normal.<ul>"
+		"Paper: power of the disagreement between triangle and normal.<ul>"
 		"<li><b>Square Root</b>: as published in 2009, respects edges</li>"
 		"<li><b>Squared</b>: smoother, removes more noise on smooth surfaces</li></ul>"));
 	list.addParam(RichEnum(
 		"optimizer",
-		static_cast<int>(defaults.optimizer),
+		static_cast<int>(defaults.paper.optimizer),
 		QStringList() << "L-BFGS-B"
 					  << "Polak-Ribiere",
 		"Optimiser",
-		"L-BFGS-B (2009), or Polak-Ribiere conjugate gradients (2007).",
+		"Paper: L-BFGS-B (2009), or Polak-Ribiere conjugate gradients (2007).",
 		true));
 	list.addParam(RichEnum(
 		"neighbors",
-		static_cast<int>(defaults.neighbors),
+		static_cast<int>(defaults.paper.neighbors),
 		QStringList() << "Six Sectors"
 					  << "Nearest",
 		"Neighbours",
-		"The six neighbours of each point: the closest in each sixth of the tangent plane, or the "
+		"Paper: the six neighbours of each point: the closest in each sixth of the tangent plane, or the "
 		"six nearest.",
 		true));
 	return list;
 }
 
-struct Movement {
-	double rms = 0.0, largest = 0.0; // model units
-};
-
-Movement movementOf(const PreparedCloud& prepared, const Eigen::Matrix3Xd& positions)
+DenoisingOptions denoisingOptions(const Parameters& parameters)
 {
-	const Eigen::VectorXd lengths = (positions - prepared.cloud.positions).colwise().norm();
-	return {
-		prepared.diagonal * std::sqrt(lengths.squaredNorm() / double(lengths.size())),
-		prepared.diagonal * lengths.maxCoeff()};
+	using Paper = EnergyDenoisingOptions;
+	DenoisingOptions options;
+	options.method           = static_cast<DenoisingOptions::Method>(parameters.choice("method"));
+	options.robust.noise     = parameters.length("noise");
+	options.robust.radius    = parameters.automaticOr("radius", 2.5, 100.0);
+	options.paper.iterations = parameters.integer("iterations", 1, 10000);
+	options.paper.energy     = static_cast<Paper::Energy>(parameters.choice("energy"));
+	options.paper.optimizer  = static_cast<Paper::Optimizer>(parameters.choice("optimizer"));
+	options.paper.neighbors  = static_cast<Paper::Neighbors>(parameters.choice("neighbors"));
+	return options;
 }
+
+// The curvature of the layer, when the method asks for it.
+class LayerCorrection {
+public:
+	LayerCorrection(const FilterContext& context, const LayerPoints& points) :
+			m_context(context), m_points(points)
+	{
+	}
+	CorrectedNormals operator()(const Progress& progress)
+	{
+		const Stopwatch watch;
+		m_curvature =
+			m_context.cache.ofLayer(currentLayer(m_context.document), m_points, progress);
+		m_seconds = watch.seconds();
+		const CurvatureEstimate& estimate = *m_curvature.estimate;
+		return {estimate.field.correctedNormals, estimate.search, estimate.minimum};
+	}
+	double seconds() const { return m_seconds; }
+	void   report(FilterResults& results) const
+	{
+		results.flag("curvature_reused", m_curvature.reused);
+		results.seconds("curvature", m_seconds);
+	}
+
+private:
+	const FilterContext& m_context;
+	const LayerPoints&   m_points;
+	LayerCurvature       m_curvature;
+	double               m_seconds = 0.0;
+};
 
 FilterResults apply(const FilterContext& context)
 {
-	const Parameters& parameters = context.parameters;
-	DenoisingOptions  options;
-	parameters.choice("method");
-	options.iterations = parameters.integer("iterations", 1, 10000);
-	options.energy     = static_cast<DenoisingOptions::Energy>(parameters.choice("energy"));
-	options.optimizer  = static_cast<DenoisingOptions::Optimizer>(parameters.choice("optimizer"));
-	options.neighbors  = static_cast<DenoisingOptions::Neighbors>(parameters.choice("neighbors"));
+	DenoisingOptions    options = denoisingOptions(context.parameters);
+	MeshModel&          layer   = currentLayer(context.document);
+	const LayerPoints   points  = readOrientedPoints(layer);
+	const Stopwatch     total;
+	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
+	options.robust.noise /= prepared.diagonal;
+	if (options.robust.noise > 0.5)
+		throw MLException(
+			"parameter 'noise' is more than half the cloud's diagonal (" +
+			QString::number(prepared.diagonal) + ").");
+	LayerCorrection       correction(context, points);
+	const Stopwatch       stage;
+	const DenoisingResult denoised =
+		denoise(prepared.cloud, std::ref(correction), options, context.progress);
+	const double seconds = stage.seconds() - correction.seconds();
+	writePositions(layer, points, prepared, denoised.positions);
+	writeNormals(layer, points, prepared, denoised.normals);
 
-	MeshModel&           layer  = currentLayer(context.document);
-	const LayerPoints    points = readOrientedPoints(layer);
-	Stopwatch            total, stage;
-	FilterResults        results;
-	const LayerCurvature curvature =
-		context.cache.ofLayer(layer, points, context.progress.sub(0.0, 0.5, ""));
-	const CurvatureEstimate& estimate = *curvature.estimate;
-	results.seconds("curvature", stage.lap());
-
-	const PointCloud corrected{estimate.prepared.cloud.positions, estimate.field.correctedNormals};
-	const DenoisingResult denoised = denoise(
-		corrected,
-		estimate.search,
-		estimate.minimum,
-		options,
-		context.progress.sub(0.5, 1.0, "Denoising"));
-	results.seconds("denoising", stage.lap());
-
-	const Movement moved = movementOf(estimate.prepared, denoised.positions);
-	writePositions(layer, points, estimate.prepared, denoised.positions);
-	writeNormals(layer, points, estimate.prepared, estimate.field.correctedNormals);
-
+	FilterResults results;
 	results.count("points", points.size());
-	results.count("invalid", estimate.prepared.nonFinite + estimate.prepared.zeroNormals);
-	results.count("duplicates", estimate.prepared.duplicates);
-	results.count("iterations", denoised.iterations);
-	results.real("energy_initial", denoised.initialEnergy);
-	results.real("energy_final", denoised.finalEnergy);
-	results.real("moved_rms", moved.rms);
-	results.real("moved_max", moved.largest);
-	results.flag("curvature_reused", curvature.reused);
+	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
+	results.count("duplicates", prepared.duplicates);
+	if (options.method == DenoisingOptions::Method::Robust) {
+		results.real("noise", denoised.noise * prepared.diagonal);
+		results.real("radius", denoised.radius);
+	}
+	else {
+		results.count("iterations", denoised.iterations);
+		results.real("energy_initial", denoised.initialEnergy);
+		results.real("energy_final", denoised.finalEnergy);
+		correction.report(results);
+	}
+	results.real("moved_rms", denoised.rmsMove * prepared.diagonal);
+	results.real("moved_max", denoised.maxMove * prepared.diagonal);
+	results.seconds("denoising", seconds);
 	results.seconds("total", total.seconds());
 	return results;
 }
@@ -121,16 +166,18 @@ FilterSpec denoiseFilter()
 	return {
 		"Denoise Point Cloud by Robust Curvature",
 		"apply_coord_point_cloud_robust_denoising",
-		"Removes noise from a point cloud. The normals are corrected by the robust curvature "
-		"estimate, which does not average across sharp edges; then the points move until the "
-		"surface they form agrees with the corrected normals." +
+		"Removes noise from a point cloud. Every point moves onto the surface that its neighbours "
+		"agree on: overlapping pieces of it are fitted, as large as the noise asks for and the "
+		"shape allows, and those that bend over a sharp edge do not count. The layer's normals "
+		"only tell the side of the surface." +
 			helpInput +
 			"<br><br><b>Writes</b> coordinates and normals. Curvature on the layer then belongs to "
-			"the former points: compute it again. The points also slide along the surface by about "
-			"the size of the noise: do not use this filter on clouds whose colours matter in "
-			"detail. "
-			"Outliers should be removed before (<i>Select Outliers by Robust Curvature</i>)." +
-			helpChaining + helpReference,
+			"the former points: compute it again. With method Paper the points also slide along the "
+			"surface by about the size of the noise: do not use it on clouds whose colours matter "
+			"in detail. Outliers should be removed before (<i>Select Outliers by Robust Curvature</i>)."
+			"<br><br>Method Paper uses curvature that is already on the layer and still fits its "
+			"points and normals, and otherwise computes it with default settings." +
+			helpReference,
 		FilterPlugin::PointSet + FilterPlugin::Smoothing,
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,

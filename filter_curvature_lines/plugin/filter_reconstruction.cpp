@@ -47,7 +47,7 @@ RichParameterList parameters(const MeshDocument&)
 		"denoise",
 		defaults.denoise,
 		"Denoise",
-		"Correct normals and positions. Switch it off for exact data."));
+		"Move the points onto the surface. Switch it off for exact data."));
 	list.addParam(RichBool(
 		"smooth_directions",
 		defaults.smoothDirections,

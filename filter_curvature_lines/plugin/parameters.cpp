@@ -43,6 +43,17 @@ double Parameters::real(const QString& name, double min, double max) const
 	return value;
 }
 
+double Parameters::automaticOr(const QString& name, double min, double max) const
+{
+	const double value = m_list.getFloat(name);
+	if (value != 0.0 && !(value >= min && value <= max))
+		throw outOfRange(
+			name,
+			QString::number(value),
+			QString("of 0 (automatic) and from %1 to %2").arg(min).arg(max));
+	return value;
+}
+
 double Parameters::length(const QString& name) const
 {
 	const double value = m_list.getFloat(name);

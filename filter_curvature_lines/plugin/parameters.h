@@ -17,6 +17,8 @@ public:
 	bool   flag(const QString& name) const;
 	Index  integer(const QString& name, int min, int max) const;
 	double real(const QString& name, double min, double max) const;
+	// 0 = automatic, or a value between the bounds.
+	double automaticOr(const QString& name, double min, double max) const;
 	// A length in model units, 0 = automatic.
 	double length(const QString& name) const;
 	// Position in the list of labels.

@@ -84,6 +84,26 @@ TEST(Reconstruction, DirtyScanIsCleanedAndStaysManifold)
 	EXPECT_GT(result.rmsMove, 0.0);
 }
 
+TEST(Reconstruction, DenoisesRobustlyUnlessToldToDoAsPublished)
+{
+	const Scan            scan    = scanOf(torus(1500, 0.005));
+	const double          before  = distanceTo("torus", scan.prepared, scan.prepared.cloud.positions);
+	ReconstructionOptions options = quick();
+	options.denoise               = true;
+	const ReconstructionResult robust = reconstruct(scan.prepared.cloud, options);
+	EXPECT_LT(distanceTo("torus", scan.prepared, robust.cloud.positions), 0.3 * before);
+	EXPECT_NEAR(robust.noise, 0.005, 0.001);
+	options.denoising.method         = DenoisingOptions::Method::Paper;
+	const ReconstructionResult paper = reconstruct(scan.prepared.cloud, options);
+	EXPECT_LT(distanceTo("torus", scan.prepared, paper.cloud.positions), 0.7 * before);
+	EXPECT_EQ(paper.noise, 0.0);
+	for (const ReconstructionResult* result : {&robust, &paper}) {
+		EXPECT_GT(result->rmsMove, 0.0);
+		EXPECT_LT((surfaceNormals(result->field) - result->cloud.normals).norm(), 1e-9);
+		EXPECT_EQ(result->seconds.count("denoising"), 1u);
+	}
+}
+
 TEST(Reconstruction, KeptPointsAndOutliersAreThePartsOfTheInput)
 {
 	const Scan            scan        = scanOf(torus(1000, 0.002, 0.05));

@@ -37,6 +37,11 @@ void estimateNormals(PointCloud& cloud)
 	}
 }
 
+double rmsMove(const PointCloud& cloud, const RobustDenoisingResult& result)
+{
+	return std::sqrt((result.positions - cloud.positions).squaredNorm() / cloud.size());
+}
+
 // In the unit frame: the surface's diagonal is the unit of length.
 struct NoisyCloud {
 	const samples::AnalyticSurface& surface;
@@ -136,10 +141,6 @@ TEST(RobustDenoising, RemovesNoiseFromSmoothSurfacesWithoutShrinkingThem)
 			height += noisy.height(result.positions.col(i)) / noisy.cloud.size();
 		EXPECT_LT(std::abs(height), 0.04 * noisy.rmsDistance(noisy.cloud.positions, noisy.all()));
 		EXPECT_LT(clumping(result.positions), 0.56);
-		EXPECT_NEAR(
-			result.rmsMove,
-			std::sqrt((result.positions - noisy.cloud.positions).squaredNorm() / noisy.cloud.size()),
-			1e-12);
 	}
 }
 
@@ -202,7 +203,7 @@ TEST(RobustDenoising, HardlyMovesACleanCloud)
 		const NoisyCloud clean(name, 3000, 0.0);
 		const auto       result  = denoiseRobustly(clean.cloud);
 		const double     spacing = std::sqrt(0.9 / 3000.0); // the area is below 1.9
-		EXPECT_LT(result.rmsMove, 0.05 * spacing);
+		EXPECT_LT(rmsMove(clean.cloud, result), 0.05 * spacing);
 	}
 }
 
@@ -324,10 +325,11 @@ TEST(RobustDenoising, SurvivesDegenerateClouds)
 		ASSERT_EQ(result.positions.cols(), cloud.positions.cols());
 		EXPECT_TRUE(result.positions.allFinite());
 		EXPECT_TRUE(result.normals.allFinite());
-		EXPECT_TRUE(std::isfinite(result.rmsMove));
-		EXPECT_LT(result.rmsMove, 0.2);
-		if (cloud.size() > 0 && cloud.positions.row(2).isZero()) {
-			EXPECT_LT(result.rmsMove, 1e-6);
+		if (cloud.size() == 0)
+			continue;
+		EXPECT_LT(rmsMove(cloud, result), 0.2);
+		if (cloud.positions.row(2).isZero()) {
+			EXPECT_LT(rmsMove(cloud, result), 1e-6);
 		}
 	}
 }

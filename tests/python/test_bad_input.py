@@ -26,7 +26,7 @@ from helpers import (
 )
 
 RNG = np.random.default_rng(5)
-QUICK = {DENOISE: {"iterations": 3}, TRACE: {"epsilon": 0.01}, PIPELINE: {"denoise": False, "reject_outliers": False}}
+QUICK = {TRACE: {"epsilon": 0.01}, PIPELINE: {"denoise": False, "reject_outliers": False}}
 
 
 @pytest.fixture(scope="module")
@@ -105,6 +105,9 @@ OUT_OF_RANGE = [
     (OUTLIERS, "sensitivity", [0.0, -1.0]),
     (OUTLIERS, "vote_threshold", [-0.01, 1.01]),
     (OUTLIERS, "rounds", [0, 21]),
+    (DENOISE, "method", [-1, 2]),
+    (DENOISE, "noise", [-1.0, float("nan"), float("inf")]),
+    (DENOISE, "radius", [-1.0, 1.0, 101.0, float("nan")]),
     (DENOISE, "iterations", [0, -5]),
     (DENOISE, "energy", [2]),
     (DENOISE, "optimizer", [2]),
@@ -134,6 +137,10 @@ def test_parameters_out_of_range_are_named(torus, name, parameter, values):
     meshes = layer(torus["positions"], torus["normals"])
     for value in values:
         refused(meshes, name, f"'{parameter}'.*allowed|Enum .* not valid", **{parameter: value})
+
+
+def test_noise_as_large_as_the_cloud(torus):
+    refused(layer(torus["positions"], torus["normals"]), DENOISE, "'noise'.*diagonal", noise=1e3)
 
 
 def test_contradicting_spacings(torus):
@@ -255,7 +262,7 @@ def test_two_sheets_in_the_same_place(torus):
 
 def test_corrected_normals_of_two_sheets_in_the_same_place_stay_opposite(torus):
     meshes = layer(np.vstack([torus["positions"]] * 2), np.vstack([torus["normals"], -torus["normals"]]))
-    for name, parameters in [(CURVATURE, {"correct_normals": True}), (DENOISE, {})]:
+    for name, parameters in [(CURVATURE, {"correct_normals": True}), (DENOISE, {}), (DENOISE, {"method": "Paper", "iterations": 3})]:
         apply(meshes, name, **parameters)
         front, back = np.split(meshes.current_mesh().vertex_normal_matrix(), 2)
         np.testing.assert_array_equal(front, -back)

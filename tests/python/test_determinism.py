@@ -13,7 +13,8 @@ meshes = helpers.layer_of(helpers.generate("torus", 800, noise=0.003, outliers=0
 for name, parameters in [
     (helpers.CURVATURE, {}),
     (helpers.OUTLIERS, {"delete_selected": True}),
-    (helpers.DENOISE, {"iterations": 10}),
+    (helpers.DENOISE, {"method": "Paper", "iterations": 10}),
+    (helpers.DENOISE, {}),
     (helpers.SMOOTH, {}),
     (helpers.TRACE, {"target_vertices": 100}),
     (helpers.MESH, {}),
@@ -40,5 +41,5 @@ def run(threads):
 
 def test_chain_is_the_same_on_one_thread_and_on_two():
     first = run(1)
-    assert len(first) == 6 and len(set(first)) == 6
+    assert len(first) == 7 and len(set(first)) == 7
     assert run(2) == first

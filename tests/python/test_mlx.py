@@ -26,7 +26,10 @@ CHAINS = {
     ],
     "m_weighted_curvature": [(M_WEIGHTED, {"bandwidth": 3.0, "weighting": "Gaussian", "scalar": "K1", "colorize": False})],
     "outliers": [(OUTLIERS, {"mode": "Paper", "vote_threshold": 0.6, "delete_selected": True})],
-    "denoising": [(DENOISE, {"iterations": 5, "energy": "Squared", "neighbors": "Nearest"})],
+    "denoising": [(DENOISE, {"noise": 0.01, "radius": 6.5})],
+    "published_denoising": [
+        (DENOISE, {"method": "Paper", "iterations": 5, "energy": "Squared", "neighbors": "Nearest"})
+    ],
     "lines_and_mesh": [(SMOOTH, {"alpha": 0.7}), (TRACE, {"target_vertices": 120}), (MESH, {"triangulate": True})],
     "pipeline": [(PIPELINE, {"target_vertices": 80, "denoise": False, "reject_outliers": False, "keep_intermediate_layers": True})],
 }
@@ -81,7 +84,7 @@ PARAMETERS = {
     CURVATURE: {"scale_mode": 0, "region_scale": 3.0, "max_iterations": 30, "feature_gate": True, "correct_normals": False, "scalar": 0,
                 "colorize": True, "boundary_threshold": 2.5, "umbilic_ratio": 0.95},
     OUTLIERS: {"mode": 0, "sensitivity": 3.5, "vote_threshold": 0.5, "rounds": 3, "delete_selected": False},
-    DENOISE: {"iterations": 100, "energy": 0, "optimizer": 0, "neighbors": 0},
+    DENOISE: {"method": 0, "noise": 0.0, "radius": 0.0, "iterations": 100, "energy": 0, "optimizer": 0, "neighbors": 0},
     SMOOTH: {"alpha": 0.5},
     TRACE: {"epsilon": 1e-5, "target_vertices": 0, "min_spacing": 0.0, "max_spacing": 0.0, "tolerance": 0.01,
             "projection": 0, "umbilic_ratio": 0.95, "smooth_directions": True},
@@ -100,15 +103,23 @@ def test_names_and_defaults_that_scripts_rely_on(torus, name, tmp_path):
         assert defaults[parameter] == pytest.approx(value), parameter
 
 
-@pytest.mark.parametrize("name", [CURVATURE, PIPELINE])
-def test_scale_modes_have_their_places_in_the_enum(noisy_torus, name, tmp_path):
+@pytest.mark.parametrize(
+    "name, parameter, labels",
+    [
+        (CURVATURE, "scale_mode", ["Adaptive", "Paper"]),
+        (PIPELINE, "scale_mode", ["Adaptive", "Paper"]),
+        (OUTLIERS, "mode", ["Robust", "Paper"]),
+        (DENOISE, "method", ["Robust", "Paper"]),
+    ],
+)
+def test_modes_have_their_places_in_the_enum(noisy_torus, name, parameter, labels, tmp_path):
     meshes = layer_of(noisy_torus)
     meshes.apply_filter(name)
     meshes.save_filter_script(str(tmp_path / "script.mlx"))
     script = ElementTree.parse(tmp_path / "script.mlx").getroot()
-    mode = next(entry for entry in script.iter("Param") if entry.get("name") == "scale_mode")
+    mode = next(entry for entry in script.iter("Param") if entry.get("name") == parameter)
     assert mode.get("value") == "0"
-    assert [mode.get(f"enum_val{k}") for k in range(int(mode.get("enum_cardinality")))] == ["Adaptive", "Paper"]
+    assert [mode.get(f"enum_val{k}") for k in range(int(mode.get("enum_cardinality")))] == labels
 
 
 def test_default_layer_of_the_mesh_filter(torus):

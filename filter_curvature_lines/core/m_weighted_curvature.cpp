@@ -15,7 +15,19 @@ namespace {
 constexpr double smallestShare = 1e-3;
 constexpr Index  fewestDirections = 4; // one more than unknowns
 
-double weightOf(double x, double h, const MWeightedCurvatureOptions& options)
+} // namespace
+
+double mWeight(double x, double h, Index exponent)
+{
+	return std::pow(x * x, double(exponent)) * gaussianWeight(x, h);
+}
+
+double gaussianWeight(double x, double h)
+{
+	return std::exp(-x * x / (h * h));
+}
+
+double squaredWeight(double x, double h, const MWeightedCurvatureOptions& options)
 {
 	double w = 1.0;
 	switch (options.weighting) {
@@ -31,18 +43,6 @@ double weightOf(double x, double h, const MWeightedCurvatureOptions& options)
 		break;
 	}
 	return w < smallestShare ? 0.0 : w * w;
-}
-
-} // namespace
-
-double mWeight(double x, double h, Index exponent)
-{
-	return std::pow(x * x, double(exponent)) * gaussianWeight(x, h);
-}
-
-double gaussianWeight(double x, double h)
-{
-	return std::exp(-x * x / (h * h));
 }
 
 void EulerLeastSquares::add(const Eigen::Vector3d& offset, double weight)
@@ -123,7 +123,7 @@ CurvatureField mWeightedCurvature(
 			if (j == i || cloud.normals.col(j).dot(normal) <= 0.0)
 				continue;
 			const Eigen::Vector3d offset = cloud.positions.col(j) - position;
-			const double          weight = weightOf(offset.norm(), h, options);
+			const double          weight = squaredWeight(offset.norm(), h, options);
 			if (!(weight > 0.0))
 				continue;
 			squares.add(offset, weight);

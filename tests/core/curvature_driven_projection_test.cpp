@@ -1,0 +1,191 @@
+// Curvature-driven projection: accuracy on exact surfaces, noise, idempotence, invariances, degenerate input.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "core/curvature_driven_projection.h"
+#include "estimated_field.h"
+
+namespace curvature_lines::test {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using Diffusion = CurvatureDrivenOptions::Diffusion;
+
+struct Control {
+	Control(const Matrix3Xd& positions, const Matrix3Xd& normals) :
+			cloud{positions, normals}, search(cloud.positions), minimum(minimumNeighborhoods(cloud, search))
+	{
+	}
+	CurvatureDrivenSurface surface(const CurvatureDrivenOptions& options = {}) const
+	{
+		return {cloud, search, minimum.spacing, options};
+	}
+	double spacing() const { return minimum.medianSpacing; }
+
+	const PointCloud           cloud;
+	const NeighborSearch       search;
+	const MinimumNeighborhoods minimum;
+};
+
+samples::SampleCloud sampled(const std::string& name, int points, double noise = 0.0)
+{
+	samples::SampleRequest request;
+	request.surface = name;
+	request.points  = points;
+	request.noise   = noise;
+	request.seed    = 1;
+	return samples::generate(request);
+}
+
+double distance(const std::string& name, const Matrix3Xd& positions)
+{
+	const samples::GroundTruth truth = samples::groundTruth(samples::surface(name), positions);
+	return std::sqrt((positions - truth.footPoints).squaredNorm() / double(positions.cols()));
+}
+
+Matrix3Xd scattered(const Matrix3Xd& positions, double by)
+{
+	samples::Random random(3, 1);
+	Matrix3Xd       result = positions;
+	for (Index i = 0; i < static_cast<Index>(result.cols()); ++i)
+		result.col(i) += by * random.normal3();
+	return result;
+}
+
+TEST(CurvatureDrivenProjection, LandsOnACleanSurface)
+{
+	const auto            torus = sampled("torus", 20000);
+	const Control         control(torus.positions, torus.normals);
+	const Matrix3Xd       queries = scattered(torus.positions.leftCols(4000), 0.5 * control.spacing());
+	const ProjectedPoints found   = projectPoints(control.surface(), queries);
+	EXPECT_EQ(std::count(found.projected.begin(), found.projected.end(), 1), 4000);
+	EXPECT_LT(distance("torus", found.positions), 0.01 * control.spacing());
+
+	const auto truth = samples::groundTruth(samples::surface("torus"), found.positions);
+	double     normals = 0.0, k1 = 0.0;
+	for (Index i = 0; i < 4000; ++i) {
+		normals += 1.0 - found.normals.col(i).dot(truth.normals.col(i));
+		k1 += std::pow(found.k1[i] - truth.k1[i], 2) / 4000;
+		EXPECT_NEAR(found.normals.col(i).norm(), 1.0, 1e-9);
+		EXPECT_GE(found.k1[i], found.k2[i]);
+	}
+	EXPECT_LT(normals / 4000, 1e-3);
+	EXPECT_LT(std::sqrt(k1), 0.1); // of 2.5; normals are means of those around
+
+	// What has been projected stays.
+	const ProjectedPoints again = projectPoints(control.surface(), found.positions, {1e-4, 1});
+	EXPECT_LT(
+		std::sqrt((again.positions - found.positions).squaredNorm() / 4000), 1e-3 * control.spacing());
+}
+
+TEST(CurvatureDrivenProjection, PublishedDiffusionShrinksByASmallShareOfTheSpacing)
+{
+	const auto    torus = sampled("torus", 5000);
+	const Control control(torus.positions, torus.normals);
+	for (const Diffusion diffusion : {Diffusion::Cutoff, Diffusion::Rational}) {
+		CurvatureDrivenOptions options;
+		options.diffusion          = diffusion;
+		const ProjectedPoints found = projectPoints(control.surface(options), torus.positions);
+		EXPECT_LT(distance("torus", found.positions), 0.2 * control.spacing());
+		EXPECT_GT(distance("torus", found.positions), 2.0 * distance("torus", projectPoints(control.surface(), torus.positions).positions));
+	}
+}
+
+TEST(CurvatureDrivenProjection, RemovesNoise)
+{
+	const auto    torus = sampled("torus", 20000, 0.005);
+	const Control control(torus.positions, planeFitNormals(torus, 16));
+	const Matrix3Xd some = torus.positions.leftCols(3000);
+	const ProjectedPoints found = projectPoints(control.surface(), some);
+	EXPECT_LT(distance("torus", found.positions), 0.35 * distance("torus", some));
+}
+
+TEST(CurvatureDrivenProjection, PlaneIsExactAndItsBoundaryEnds)
+{
+	const auto    sheet = sampled("plane", 2000);
+	const Control control(sheet.positions, sheet.normals);
+	Matrix3Xd     queries(3, 3);
+	queries.col(0) = Vector3d(0.1, 0.2, 0.01);
+	queries.col(1) = Vector3d(0.1, 0.2, 5.0);
+	queries.col(2) = Vector3d(9.0, 0.0, 0.0);
+	const ProjectedPoints found = projectPoints(control.surface(), queries);
+	EXPECT_TRUE(found.projected[0]);
+	EXPECT_LT((found.positions.col(0) - Vector3d(0.1, 0.2, 0.0)).norm(), 1e-9);
+	for (const Index far : {1, 2}) { // stay where they are
+		EXPECT_FALSE(found.projected[far]);
+		EXPECT_EQ(found.positions.col(far), queries.col(far));
+	}
+}
+
+TEST(CurvatureDrivenProjection, SheetsThatTouchDoNotMix)
+{
+	const auto sheet = sampled("plane", 2000);
+	Matrix3Xd  positions(3, 4000), normals(3, 4000);
+	const Vector3d gap(0, 0, -0.02);
+	positions << sheet.positions, sheet.positions.colwise() + gap;
+	normals << sheet.normals, -sheet.normals;
+	const Control         control(positions, normals);
+	const ProjectedPoints found = projectPoints(control.surface(), positions);
+	EXPECT_LT((found.positions - positions).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(CurvatureDrivenProjection, InvariancesOfTheGeometry)
+{
+	const auto            shape   = sampled("ellipsoid", 2000, 0.001);
+	const Control         control(shape.positions, shape.normals);
+	const Matrix3Xd       queries = shape.positions.leftCols(500);
+	const ProjectedPoints base    = projectPoints(control.surface(), queries);
+	const double          near    = 1e-3 * control.spacing();
+
+	const Control         scaled(1024.0 * shape.positions, shape.normals);
+	const ProjectedPoints large = projectPoints(scaled.surface(), 1024.0 * queries);
+	EXPECT_LT((large.positions / 1024.0 - base.positions).cwiseAbs().maxCoeff(), near);
+	EXPECT_LT((1024.0 * large.k1 - base.k1).cwiseAbs().maxCoeff(), 1e-3);
+
+	const Control         flipped(shape.positions, -shape.normals);
+	const ProjectedPoints other = projectPoints(flipped.surface(), queries);
+	EXPECT_LT((other.positions - base.positions).cwiseAbs().maxCoeff(), near);
+	EXPECT_LT((other.k1 + base.k2).cwiseAbs().maxCoeff(), 1e-3);
+
+	const Eigen::Matrix3d turn =
+		Eigen::AngleAxisd(1.1, Vector3d(0.4, -0.8, 0.3).normalized()).toRotationMatrix();
+	// With one spacing everywhere: slices of minimum neighbourhoods turn with the frame.
+	const std::vector<double> even(2000, control.spacing());
+	const PointCloud          turnedCloud{turn * shape.positions, turn * shape.normals};
+	const NeighborSearch      turnedSearch(turnedCloud.positions);
+	const ProjectedPoints     turned =
+		projectPoints({turnedCloud, turnedSearch, even}, turn * queries);
+	const ProjectedPoints straight =
+		projectPoints({control.cloud, control.search, even}, queries);
+	EXPECT_LT((turned.positions - turn * straight.positions).cwiseAbs().maxCoeff(), near);
+
+	const int threads = omp_get_max_threads();
+	omp_set_num_threads(3);
+	EXPECT_EQ(projectPoints(control.surface(), queries).positions, base.positions);
+	omp_set_num_threads(threads);
+}
+
+TEST(CurvatureDrivenProjection, DegenerateControlCloudsLeavePointsWhereTheyAre)
+{
+	for (const Index n : {0, 1, 2, 30}) {
+		Matrix3Xd positions = Matrix3Xd::Zero(3, n), normals = Matrix3Xd::Zero(3, n);
+		if (n > 0)
+			positions.row(0).setLinSpaced(0.0, n > 1 ? 1.0 : 0.0);
+		normals.row(2).setOnes();
+		const Control         control(positions, normals);
+		const Matrix3Xd       queries = Matrix3Xd::Constant(3, 2, 0.01);
+		const ProjectedPoints found   = projectPoints(control.surface(), queries);
+		EXPECT_EQ(found.positions, queries);
+		EXPECT_FALSE(found.projected[0]);
+	}
+	const Control control(sampled("plane", 100).positions, sampled("plane", 100).normals);
+	EXPECT_EQ(projectPoints(control.surface(), Matrix3Xd(3, 0)).positions.cols(), 0);
+}
+
+} // namespace
+} // namespace curvature_lines::test

@@ -3,9 +3,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
-
 #include "m_weighted_curvature.h"
+#include "point_set_surface.h"
 
 namespace curvature_lines {
 
@@ -24,57 +23,21 @@ struct CurvatureDrivenOptions {
 	MWeightedCurvatureOptions curvature; // `neighbors` is the one above
 };
 
-// The surface a cloud of control points defines. Cheap to make; the cloud and the search must outlive it.
-class CurvatureDrivenSurface {
+// The surface that control points define. Cheap to make.
+class CurvatureDrivenSurface : public PointSetSurface {
 public:
-	CurvatureDrivenSurface(
-		const PointCloud&             control,
-		const NeighborSearch&         search,
-		const std::vector<double>&    spacing, // per control point, length
-		const CurvatureDrivenOptions& options = {});
+	CurvatureDrivenSurface(const ControlPoints& control, const CurvatureDrivenOptions& options = {}) :
+			m_control(control), m_options(options)
+	{
+	}
 
-	// z = (k1 x^2 + k2 y^2) / 2 in the frame (d1, d2, normal) at origin; k1 and k2 are T06's, positive where
-	// the surface bends towards the normal.
-	struct Quadric {
-		Eigen::Vector3d origin, d1, d2, normal;
-		double          k1 = 0.0, k2 = 0.0;
-		double          spacing = 0.0; // of the control points around, length
-
-		// The quadric's point below or above `position`, along the normal (T06 fig. 5, step 7).
-		Eigen::Vector3d foot(const Eigen::Vector3d& position) const;
-		Eigen::Vector3d normalAt(const Eigen::Vector3d& position) const; // unit
-	};
-	// Steps 1 to 6. Nothing where no control point is near, or too few for a tensor.
-	std::optional<Quadric> quadricNear(const Eigen::Vector3d& position) const;
+	// Steps 1 to 6: z = (k1 x^2 + k2 y^2) / 2 over the tangent plane at a point of the surface, in principal
+	// directions; k1 and k2 are T06's here, positive where the surface bends towards the normal.
+	std::optional<LocalQuadric> near(const Eigen::Vector3d& position) const override;
 
 private:
-	struct Neighborhood;
-	bool gather(const Eigen::Vector3d& position, Neighborhood& around) const;
-
-	const PointCloud&          m_control;
-	const NeighborSearch&      m_search;
-	const std::vector<double>& m_spacing;
-	CurvatureDrivenOptions     m_options;
+	ControlPoints          m_control;
+	CurvatureDrivenOptions m_options;
 };
-
-struct ProjectionOptions {
-	double tolerance  = 1e-4; // in local spacings: a point that moves less is on the surface
-	Index  iterations = 10;   // projections of one point at most (T06: 2 or 3 suffice)
-};
-
-struct ProjectedPoints {
-	Eigen::Matrix3Xd positions, normals; // 3 x N; where nothing is near, the position given and no normal
-	Eigen::VectorXd  k1, k2;             // N, convex positive, k1 >= k2
-	Eigen::Matrix3Xd d1, d2;             // 3 x N unit
-	std::vector<char> projected;         // N
-	Index            iterations = 0;     // largest number any point needed
-};
-
-// Every point of `positions` (3 x N) projected until it stays.
-ProjectedPoints projectPoints(
-	const CurvatureDrivenSurface& surface,
-	const Eigen::Matrix3Xd&       positions,
-	const ProjectionOptions&      options  = {},
-	const Progress&               progress = {});
 
 } // namespace curvature_lines

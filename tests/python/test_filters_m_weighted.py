@@ -76,8 +76,9 @@ def test_scalar_becomes_quality(torus, scalar, attribute_name):
     assert meshes.current_mesh().has_vertex_color()
 
 
-def test_filters_that_go_on_use_the_robust_curvature(torus):
-    meshes, robust = layer_of(torus), layer_of(torus)
+def test_filters_that_go_on_use_the_robust_curvature():
+    cloud = generate("torus", 1000, seed=77)  # which nothing else has estimated before
+    meshes, robust = layer_of(cloud), layer_of(cloud)
     meshes.apply_filter(M_WEIGHTED)
     report = meshes.apply_filter(SMOOTH)
     robust.apply_filter(CURVATURE)

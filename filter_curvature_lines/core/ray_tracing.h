@@ -1,0 +1,66 @@
+// Ray tracing of point-set surfaces (Adamson and Alexa 2003; T06 section 5): spheres around the control points
+// enclose the surface, and local quadrics lead a ray to it.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+
+#include "point_set_surface.h"
+
+namespace curvature_lines {
+
+// A pinhole. Pixel rows go down, columns to the right.
+struct Camera {
+	Eigen::Vector3d position = {0, 0, 2}, target = {0, 0, 0}, up = {0, 1, 0};
+	double          fieldOfView = 30.0; // degrees, across the shorter side of the image
+
+	// Looks at the middle of the points from the side of their normals' mean, from a little above, and sees
+	// all of them.
+	static Camera facing(const PointCloud& cloud, double aspectRatio);
+};
+
+struct RayTracingOptions {
+	int    width = 533, height = 400; // pixels
+	double tolerance     = 1e-4;      // in local spacings, of the point on the surface
+	int    maxIterations = 10;        // quadrics per sphere
+};
+
+struct RayHit {
+	double          depth = std::numeric_limits<double>::infinity(); // along the unit ray; infinite: none
+	Eigen::Vector3d position = Eigen::Vector3d::Zero();
+	Eigen::Vector3d normal   = Eigen::Vector3d::Zero(); // unit, towards the outside of the surface
+
+	bool exists() const { return depth < std::numeric_limits<double>::infinity(); }
+};
+
+struct Ray {
+	Eigen::Vector3d origin, direction; // unit
+};
+
+// Ready for any number of rays, from any number of threads.
+class RayTracer {
+public:
+	RayTracer(const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options);
+	~RayTracer();
+
+	RayHit trace(const Ray& ray) const;
+
+private:
+	struct Spheres;
+	RayHit traceInSphere(const Ray& ray, const Eigen::Vector3d& center, double radius) const;
+
+	const PointSetSurface&         m_surface;
+	RayTracingOptions              m_options;
+	std::unique_ptr<const Spheres> m_spheres;
+};
+
+Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double column, double row);
+
+// width x height hits, row by row, through the middles of the pixels.
+std::vector<RayHit> traceImage(
+	const RayTracer&         tracer,
+	const Camera&            camera,
+	const RayTracingOptions& options,
+	const Progress&          progress = {});
+
+} // namespace curvature_lines

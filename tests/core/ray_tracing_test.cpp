@@ -1,0 +1,176 @@
+// Ray tracing of point-set surfaces against exact surfaces; silhouettes, boundaries, cameras, threads, bad input.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "core/curvature_driven_projection.h"
+#include "core/moving_least_squares.h"
+#include "core/ray_tracing.h"
+#include "estimated_field.h"
+
+namespace curvature_lines::test {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+struct Scene {
+	explicit Scene(const std::string& surface, int points) :
+			Scene(cloudOf(surface, points))
+	{
+	}
+	explicit Scene(PointCloud points) :
+			cloud(std::move(points)), search(cloud.positions), minimum(minimumNeighborhoods(cloud, search))
+	{
+	}
+	static PointCloud cloudOf(const std::string& surface, int points)
+	{
+		samples::SampleRequest request;
+		request.surface   = surface;
+		request.points    = points;
+		request.seed      = 1;
+		const auto sample = samples::generate(request);
+		return {sample.positions, sample.normals};
+	}
+	ControlPoints control() const { return {cloud, search, minimum.spacing}; }
+
+	const PointCloud           cloud;
+	const NeighborSearch       search;
+	const MinimumNeighborhoods minimum;
+};
+
+RayTracingOptions small(int width = 60, int height = 40)
+{
+	RayTracingOptions options;
+	options.width  = width;
+	options.height = height;
+	return options;
+}
+
+TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
+{
+	const Scene                  scene("sphere", 4000);
+	const CurvatureDrivenSurface driven(scene.control());
+	const MovingLeastSquaresSurface squares(scene.control());
+	for (const PointSetSurface* surface : {static_cast<const PointSetSurface*>(&driven), static_cast<const PointSetSurface*>(&squares)}) {
+		const RayTracer tracer(*surface, scene.control(), {});
+		int             wrong = 0, rays = 0;
+		for (double x = -1.1; x <= 1.1; x += 0.1)
+			for (double y = -1.1; y <= 1.1; y += 0.1, ++rays) {
+				const RayHit hit    = tracer.trace({Vector3d(x, y, 5.0), -Vector3d::UnitZ()});
+				const double square = 1.0 - x * x - y * y;
+				if (std::abs(std::sqrt(x * x + y * y) - 1.0) < 0.01)
+					continue; // the silhouette itself
+				wrong += hit.exists() != (square > 0.0);
+				if (!hit.exists() || square <= 0.0)
+					continue;
+				EXPECT_NEAR(hit.depth, 5.0 - std::sqrt(square), 0.1 * scene.minimum.medianSpacing / std::sqrt(square));
+				EXPECT_GT(hit.normal.dot(hit.position.normalized()), 0.999);
+			}
+		EXPECT_LE(wrong, rays / 200);
+	}
+}
+
+TEST(RayTracing, BothSurfacesShowTheSamePicture)
+{
+	const Scene                     scene("torus", 5000);
+	const Camera                    camera = Camera::facing(scene.cloud, 1.5);
+	const CurvatureDrivenSurface    driven(scene.control());
+	const MovingLeastSquaresSurface squares(scene.control());
+	const auto options = small(120, 80);
+	const auto a = traceImage(RayTracer(driven, scene.control(), options), camera, options);
+	const auto b = traceImage(RayTracer(squares, scene.control(), options), camera, options);
+	int        differ = 0, both = 0, seen = 0;
+	double     depth = 0.0;
+	for (std::size_t p = 0; p < a.size(); ++p) {
+		differ += a[p].exists() != b[p].exists();
+		seen += a[p].exists();
+		if (a[p].exists() && b[p].exists()) {
+			depth += std::abs(a[p].depth - b[p].depth);
+			++both;
+		}
+	}
+	EXPECT_GT(seen, 1500); // the camera sees it large
+	EXPECT_LE(differ, int(a.size()) / 200);
+	EXPECT_LT(depth / both, 0.2 * scene.minimum.medianSpacing);
+}
+
+TEST(RayTracing, CameraSeesAllPointsAndTheFrontOfAScan)
+{
+	const Scene  scene("bent_sheet", 1000);
+	const Camera camera = Camera::facing(scene.cloud, 1.5);
+	EXPECT_GT((camera.position - camera.target).dot(scene.cloud.normals.rowwise().mean()), 0.0);
+	const auto   options = small();
+	const Ray    middle  = rayThrough(camera, options, 30.0, 20.0);
+	EXPECT_LT(middle.direction.cross(camera.target - camera.position).norm(), 1e-9);
+	const Vector3d right = middle.direction.cross(camera.up).normalized(), up = right.cross(middle.direction);
+	const double   half  = std::tan(camera.fieldOfView * EIGEN_PI / 360.0);
+	for (Index i = 0; i < scene.cloud.size(); ++i) {
+		const Vector3d d = scene.cloud.positions.col(i) - camera.position;
+		EXPECT_LE(std::abs(d.dot(right) / d.dot(middle.direction)), 1.5 * half);
+		EXPECT_LE(std::abs(d.dot(up) / d.dot(middle.direction)), half);
+	}
+}
+
+TEST(RayTracing, OpenSurfaceEndsNearItsRim)
+{
+	const Scene                  scene("plane", 2000); // the unit square
+	const CurvatureDrivenSurface surface(scene.control());
+	const RayTracer              tracer(surface, scene.control(), {});
+	const Eigen::AlignedBox3d    box = samples::surface("plane").boundingBox();
+	const double                 s   = scene.minimum.medianSpacing;
+	for (double along = 0.05; along < 1.0; along += 0.05) {
+		const Vector3d rim = box.min() + Vector3d(along * box.sizes().x(), 0, 0);
+		EXPECT_TRUE(tracer.trace({rim + Vector3d(0, 2 * s, 1), -Vector3d::UnitZ()}).exists());
+		EXPECT_FALSE(tracer.trace({rim + Vector3d(0, -4 * s, 1), -Vector3d::UnitZ()}).exists());
+	}
+	// From behind as well, with the same normal.
+	const RayHit back = tracer.trace({box.center() - Vector3d::UnitZ(), Vector3d::UnitZ()});
+	ASSERT_TRUE(back.exists());
+	EXPECT_NEAR(back.depth, 1.0, 1e-6);
+	EXPECT_GT(back.normal.z(), 0.99);
+	// Nothing behind the eye.
+	EXPECT_FALSE(tracer.trace({box.center() - Vector3d::UnitZ(), -Vector3d::UnitZ()}).exists());
+}
+
+TEST(RayTracing, NumberOfThreadsChangesNothing)
+{
+	const Scene                  scene("torus", 1500);
+	const CurvatureDrivenSurface surface(scene.control());
+	const auto                   options = small();
+	const RayTracer              tracer(surface, scene.control(), options);
+	const Camera                 camera  = Camera::facing(scene.cloud, 1.5);
+	const int                    threads = omp_get_max_threads();
+	omp_set_num_threads(1);
+	const auto one = traceImage(tracer, camera, options);
+	omp_set_num_threads(3);
+	const auto three = traceImage(tracer, camera, options);
+	omp_set_num_threads(threads);
+	for (std::size_t p = 0; p < one.size(); ++p)
+		EXPECT_EQ(one[p].depth, three[p].depth);
+}
+
+TEST(RayTracing, FewPointsAreNoSurfaceAndARowOfThemAStripAtMost)
+{
+	for (const Index n : {0, 1, 2, 30}) {
+		PointCloud cloud{Matrix3Xd::Zero(3, n), Matrix3Xd::Zero(3, n)};
+		if (n > 0)
+			cloud.positions.row(0).setLinSpaced(0.0, n > 1 ? 1.0 : 0.0);
+		cloud.normals.row(2).setOnes();
+		const Scene                  scene(cloud);
+		const CurvatureDrivenSurface surface(scene.control());
+		const auto                   options = small(16, 16);
+		const Camera                 camera  = Camera::facing(scene.cloud, 1.0);
+		for (const RayHit& hit : traceImage(RayTracer(surface, scene.control(), options), camera, options))
+			if (n < 30)
+				EXPECT_FALSE(hit.exists());
+			else if (hit.exists())
+				EXPECT_NEAR(hit.position.z(), 0.0, 1e-9);
+	}
+}
+
+} // namespace
+} // namespace curvature_lines::test

@@ -116,11 +116,16 @@ double gateWeight(double e2)
 	return e2 < maxGate * maxGate ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
 }
 
-// Arc over chord of a circular arc that turns by an angle of this cosine.
+// Arc over chord of a circular arc that turns by an angle of this cosine: t / sin t as a series in
+// sin^2(t/2), to six digits down to minBent.
 double arcOverChord(double cosine)
 {
-	const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-	return sine > 1e-4 ? std::atan2(sine, cosine) / sine : 1.0;
+	constexpr int terms = 12;
+	const double  s     = 0.5 * std::max(0.0, 1.0 - cosine);
+	double        sum   = 1.0;
+	for (int k = terms; k > 0; --k)
+		sum = 1.0 + sum * s * (2.0 * k / (2.0 * k + 1.0));
+	return sum;
 }
 
 void addSample(Scratch& scratch, double x, double y, double z, double w)
@@ -380,6 +385,7 @@ private:
 	const BlendInput&       m_input;
 	const BlendGuide&       m_guide;
 	const BlendOptions&     m_options;
+	std::vector<Index>      m_points;  // of the centres
 	Eigen::Matrix3Xd        m_centers;
 	NeighborSearch          m_search; // of the centres
 	std::vector<BlendPatch> m_patches;
@@ -401,7 +407,8 @@ CoveringPatches::CoveringPatches(
 		m_input(input),
 		m_guide(guide),
 		m_options(options),
-		m_centers(guide.positions.leftCols(centerCount(input.cloud.size(), options))),
+		m_points(input.order.sample(centerCount(input.cloud.size(), options))),
+		m_centers(columnsOf(guide.positions, m_points)),
 		m_search(m_centers),
 		m_patches(m_centers.cols())
 {
@@ -416,12 +423,9 @@ CoveringPatches::CoveringPatches(
 				used[j] = 1;
 		}
 	const NeighborSearch search(guide.positions);
-	std::vector<Index>   centers;
-	for (const Index j : input.route)
-		if (j < m_centers.cols() && used[j])
-			centers.push_back(j);
-	parallelFor(static_cast<Index>(centers.size()), progress, [&](Index c) {
-		m_patches[centers[c]] = patchAt(input, guide, options, search, centers[c]);
+	parallelFor(static_cast<Index>(m_patches.size()), progress, [&](Index c) {
+		if (used[c])
+			m_patches[c] = patchAt(input, guide, options, search, m_points[c]);
 	});
 }
 

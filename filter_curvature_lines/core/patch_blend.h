@@ -4,16 +4,17 @@
 #pragma once
 
 #include "neighborhoods.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 
-// What patches are fitted to. Columns are in shuffled order (shuffled_order.h): the first so many points
-// are a fair sample of the cloud, and serve as centres of patches and as test points.
+// What patches are fitted to. Columns are in `order`; the first of its shuffled order are the centres of
+// patches.
 struct BlendInput {
+	SpatialOrder        order;
 	PointCloud          cloud;
 	std::vector<double> spacing; // per point, smooth: the unit of radii
 	std::vector<double> noise;   // per point: standard deviation of the positions, a length
-	std::vector<Index>  route;   // all points, near ones in turn: a cache then holds what they share
 };
 
 // Where the points are thought to be: tells frames and gates. Heights are always those of the input,
@@ -46,7 +47,7 @@ struct PatchBlend {
 	std::vector<double> variance, effectiveCount;
 };
 
-// At the points of `targets` only, with the patches they need.
+// At the points of `targets` only, with the patches they need; best in ascending order.
 PatchBlend blendPatches(
 	const BlendInput&         input,
 	const BlendGuide&         guide,

@@ -9,7 +9,6 @@
 
 #include "patch_blend.h"
 #include "quantile.h"
-#include "shuffled_order.h"
 
 namespace curvature_lines {
 
@@ -66,7 +65,8 @@ double quantile(std::vector<double> values, double share)
 
 // Side of the square that holds one point, averaged over some hundred neighbours: radii of patches
 // that overlap have to be alike.
-std::vector<double> localSpacing(const PointCloud& cloud, const Progress& progress)
+std::vector<double>
+localSpacing(const PointCloud& cloud, const SpatialOrder& order, const Progress& progress)
 {
 	constexpr Index      k = 16, averaged = 32, thinning = 8;
 	const Index          n = cloud.size();
@@ -77,14 +77,15 @@ std::vector<double> localSpacing(const PointCloud& cloud, const Progress& progre
 		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
 		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
 	});
-	const Index            samples = std::max(std::min(n, averaged), n / thinning);
-	const Eigen::Matrix3Xd sample  = cloud.positions.leftCols(samples);
-	const NeighborSearch   sampleSearch(sample);
+	const std::vector<Index> sample =
+		order.sample(std::max(std::min(n, averaged), n / thinning));
+	const Eigen::Matrix3Xd places = columnsOf(cloud.positions, sample);
+	const NeighborSearch   sampleSearch(places);
 	parallelFor(n, progress.sub(0.5, 1.0, stage), [&](Index i) {
 		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
 		double                   sum  = 0.0;
 		for (const Index j : near)
-			sum += std::log(raw[j]);
+			sum += std::log(raw[sample[j]]);
 		smooth[i] = std::exp(sum / double(near.size()));
 	});
 	return smooth;
@@ -106,28 +107,6 @@ Progress rung(const Progress& progress, int k)
 {
 	constexpr double left = 0.75;
 	return progress.sub(1.0 - std::pow(left, k), 1.0 - std::pow(left, k + 1), stage);
-}
-
-// Along a Morton curve.
-std::vector<Index> routeThrough(const Eigen::Matrix3Xd& positions)
-{
-	constexpr int         bits   = 10;
-	const Eigen::Vector3d corner = positions.rowwise().minCoeff();
-	const double extent = std::max(1e-30, (positions.colwise() - corner).maxCoeff());
-	std::vector<std::pair<std::uint32_t, Index>> cells;
-	for (Index i = 0; i < positions.cols(); ++i) {
-		const Eigen::Vector3d p    = (positions.col(i) - corner) * (((1 << bits) - 1) / extent);
-		std::uint32_t         code = 0;
-		for (int b = bits - 1; b >= 0; --b)
-			for (int c = 0; c < 3; ++c)
-				code = code << 1 | (static_cast<std::uint32_t>(p[c]) >> b & 1u);
-		cells.emplace_back(code, i);
-	}
-	std::sort(cells.begin(), cells.end());
-	std::vector<Index> route;
-	for (const auto& cell : cells)
-		route.push_back(cell.second);
-	return route;
 }
 
 struct Candidate {
@@ -166,9 +145,9 @@ private:
 	double score(const Candidate& candidate, const std::vector<Index>& points) const;
 
 	RobustDenoisingOptions m_options;
-	std::vector<Index>     m_order;
 	BlendInput             m_input;
 	BlendGuide             m_start;            // the input itself
+	std::vector<Index>     m_everywhere;       // all points
 	std::vector<Index>     m_test;             // points that scores are taken from
 	std::vector<Index>     m_plain;            // of m_test, off the edges
 	double                 m_spacing     = 0.0; // median
@@ -177,20 +156,16 @@ private:
 };
 
 RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
-		m_options(options), m_order(shuffledOrder(cloud.positions))
+		m_options(options),
+		m_input{SpatialOrder(cloud.positions), {}, {}, {}},
+		m_everywhere(cloud.size()),
+		m_test(m_input.order.sample(testPoints)),
+		m_plain(m_test)
 {
-	const Index n = cloud.size();
-	m_input.cloud.positions.resize(3, n);
-	m_input.cloud.normals.resize(3, n);
-	for (Index i = 0; i < n; ++i) {
-		m_input.cloud.positions.col(i) = cloud.positions.col(m_order[i]);
-		m_input.cloud.normals.col(i)   = cloud.normals.col(m_order[i]);
-	}
+	m_input.cloud = {
+		m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
 	m_start = {m_input.cloud.positions, m_input.cloud.normals};
-	m_input.route = routeThrough(m_input.cloud.positions);
-	m_test.resize(std::min(n, testPoints));
-	std::iota(m_test.begin(), m_test.end(), 0);
-	m_plain = m_test;
+	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
 }
 
 Candidate RobustDenoiser::candidate(
@@ -259,14 +234,13 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 
 double RobustDenoiser::freeRadius(const Progress& progress) const
 {
-	if (m_options.radius > 0.0)
-		return m_options.radius;
+	const double widest = m_options.radius > 0.0 ? m_options.radius : maxFreeRadius;
 	BlendOptions options;
 	options.purity  = strictPurity;
 	options.overlap = testOverlap;
 	double best = std::numeric_limits<double>::infinity(), radius = m_firstRadius;
 	options.radius = m_firstRadius;
-	for (int k = 0; options.radius < maxFreeRadius; ++k, options.radius *= freeStep) {
+	for (int k = 0; options.radius < widest; ++k, options.radius *= freeStep) {
 		const double s = score(candidate(m_start, options, m_test, rung(progress, k)), m_plain);
 		if (s < best)
 			radius = options.radius;
@@ -304,7 +278,7 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 	BlendOptions options;
 	options.radius = freeRadius(progress.sub(0.0, 0.2, stage));
 	options.purity = strictPurity;
-	Candidate c    = candidate(m_start, options, m_input.route, progress.sub(0.2, 0.4, stage));
+	Candidate c    = candidate(m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
 	options.support = Support::Bent;
 	options.purity  = mildPurity;
 	double start    = bentStart * options.radius;
@@ -312,7 +286,7 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 		const BlendGuide guide{c.blend.positions, c.blend.normals};
 		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
 		options.radius        = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
-		c                     = candidate(guide, options, m_input.route, part.sub(0.6, 1.0, stage));
+		c                     = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
 		start                 = options.radius / bentStep;
 	}
 	return c;
@@ -413,7 +387,7 @@ std::vector<double> RobustDenoiser::sharpShare(
 void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 {
 	std::vector<Index> targets;
-	for (const Index i : m_input.route)
+	for (Index i = 0; i < size(); ++i)
 		if (smooth.blend.purity[i] < sharpPurity)
 			targets.push_back(i);
 	if (targets.empty())
@@ -433,7 +407,7 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
-	m_input.spacing = localSpacing(m_input.cloud, progress.sub(0.0, 0.05, stage));
+	m_input.spacing = localSpacing(m_input.cloud, m_input.order, progress.sub(0.0, 0.05, stage));
 	m_spacing       = quantile(m_input.spacing, 0.5);
 	findNoise(progress.sub(0.05, 0.15, stage));
 	findPlainPoints(progress.sub(0.15, 0.2, stage));
@@ -441,12 +415,8 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
 
 	RobustDenoisingResult result;
-	result.positions.resize(3, size());
-	result.normals.resize(3, size());
-	for (Index i = 0; i < size(); ++i) {
-		result.positions.col(m_order[i]) = cleaned.blend.positions.col(i);
-		result.normals.col(m_order[i])   = cleaned.blend.normals.col(i);
-	}
+	result.positions = m_input.order.restore(cleaned.blend.positions);
+	result.normals   = m_input.order.restore(cleaned.blend.normals);
 	result.noise  = m_noise;
 	result.radius = cleaned.radius;
 	return result;

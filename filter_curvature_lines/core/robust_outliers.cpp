@@ -7,7 +7,7 @@
 
 #include "outlier_voter.h"
 #include "quantile.h"
-#include "shuffled_order.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 
@@ -23,6 +23,9 @@ constexpr Index  smallestShare    = 25;  // a voter sees at most this part of th
 constexpr Index  votesPerPoint    = 50;
 constexpr double surfaceNoises    = 7.0; // radius of a voter in noise units, at least
 constexpr double neighborGrowth   = 1.2; // fewer more are not worth a new fit
+constexpr Index  pilotVoters      = 500; // tell how many points voters need
+constexpr int    pilotRounds      = 2;
+constexpr double quietPart        = 0.25; // of the cloud needs fewer, and must not be given more
 constexpr Index  noiseWitnesses   = 20;  // voters whose deviations make the noise, at least
 constexpr double bentOverAnEdge   = 1.5; // noise units of deviation
 // Voters that see an edge count only where there is no other; those that end before the point have a say
@@ -169,7 +172,9 @@ public:
 	OutlierResult result() const;
 
 private:
-	void  seatVoters();
+	void  chooseSize(const Progress& progress);
+	void  seatVoters(Index step);
+	void  fitSeated(const Progress& progress);
 	void  measureNoise(const Progress& progress);
 	void  collectVoters();
 	void  rejectByVerdict(std::vector<char>& rejected);
@@ -178,12 +183,12 @@ private:
 	Index neighborsWanted(const OutlierVoter& voter) const;
 	Index size() const { return static_cast<Index>(m_positions.cols()); }
 
-	const Matrix3Xd&    m_positions;
+	const SpatialOrder  m_order;
+	const Matrix3Xd     m_positions; // in this order, as everything below
 	double              m_sensitivity;
 	NeighborSearch      m_search;
-	std::vector<Index>  m_order, m_rank; // independent of the order of the input
 	std::vector<double> m_crowding;
-	Index               m_largest, m_neighbors, m_step;
+	Index               m_largest, m_neighbors;
 
 	std::vector<OutlierVoter> m_voters;
 	std::vector<char>         m_stale;    // voters to be fitted again
@@ -195,24 +200,39 @@ private:
 
 RobustVote::RobustVote(
 	const Matrix3Xd& positions, double sensitivity, const Progress& progress) :
-		m_positions(positions),
+		m_order(positions),
+		m_positions(m_order.arrange(positions)),
 		m_sensitivity(sensitivity),
-		m_search(positions),
-		m_order(shuffledOrder(positions)),
-		m_rank(size()),
+		m_search(m_positions),
 		m_crowding(size()),
 		m_largest(std::max(fewestNeighbors, size() / smallestShare)),
 		m_neighbors(std::min(usualNeighbors, m_largest)),
-		m_step(std::max<Index>(1, m_neighbors / votesPerPoint)),
 		m_verdicts(size()),
 		m_rejected(size(), 0)
 {
-	for (Index k = 0; k < size(); ++k)
-		m_rank[m_order[k]] = k;
-	parallelFor(size(), progress, [&](Index i) {
+	parallelFor(size(), progress.sub(0.0, 0.5, "Finding neighbors"), [&](Index i) {
 		const auto nearest = m_search.nearest(m_positions.col(i), crowdSize + 1);
 		m_crowding[i]      = (m_positions.col(nearest.back()) - m_positions.col(i)).norm();
 	});
+	chooseSize(progress.sub(0.5, 1.0, "Measuring the noise"));
+}
+
+// Voters as large as the noise asks for from the start: fewer of them are enough, and the first round is
+// not done for nothing.
+void RobustVote::chooseSize(const Progress& progress)
+{
+	for (int round = 0; round < pilotRounds && m_largest > neighborGrowth * m_neighbors; ++round) {
+		seatVoters(std::max<Index>(1, size() / pilotVoters));
+		fitSeated(progress.sub(0.5 * round, 0.5 * (round + 1), "Measuring the noise"));
+		std::vector<double> wanted;
+		for (const OutlierVoter& voter : m_voters)
+			wanted.push_back(neighborsWanted(voter));
+		m_voters.clear();
+		const auto enough = static_cast<Index>(quantileInPlace(wanted, quietPart));
+		if (enough == m_neighbors)
+			break;
+		m_neighbors = enough;
+	}
 }
 
 Index RobustVote::neighborsWanted(const OutlierVoter& voter) const
@@ -227,16 +247,15 @@ Index RobustVote::neighborsWanted(const OutlierVoter& voter) const
 }
 
 // A random part of the cloud, and the points rejected before: few others judge those far from everything.
-void RobustVote::seatVoters()
+void RobustVote::seatVoters(Index step)
 {
 	std::vector<Index> seat(size(), -1);
 	for (std::size_t v = 0; v < m_voters.size(); ++v)
 		seat[m_voters[v].centre] = static_cast<Index>(v);
 	std::vector<OutlierVoter> voters;
 	std::vector<char>         stale;
-	for (Index k = 0; k < size(); ++k) {
-		const Index i = m_order[k];
-		if (k % m_step != 0 && !m_rejected[i])
+	for (Index i = 0; i < size(); ++i) {
+		if (m_order.rank[i] % step != 0 && !m_rejected[i])
 			continue;
 		if (seat[i] < 0) {
 			voters.emplace_back();
@@ -256,16 +275,20 @@ void RobustVote::seatVoters()
 
 void RobustVote::fitVoters(const Progress& progress)
 {
-	seatVoters();
+	seatVoters(std::max<Index>(1, m_neighbors / votesPerPoint));
+	fitSeated(progress);
+}
+
+void RobustVote::fitSeated(const Progress& progress)
+{
 	std::vector<Index> active;
-	for (const Index i : m_order)
+	for (Index i = 0; i < size(); ++i)
 		if (!m_rejected[i])
 			active.push_back(i);
-	Matrix3Xd activePositions(3, active.size());
-	for (std::size_t k = 0; k < active.size(); ++k)
-		activePositions.col(k) = m_positions.col(active[k]);
+	const Matrix3Xd      activePositions = columnsOf(m_positions, active);
 	const NeighborSearch activeSearch(activePositions);
-	const VoterCloud     cloud{m_positions, m_crowding, m_rank, m_search, active, activeSearch};
+	const VoterCloud     cloud{
+        m_positions, m_crowding, m_order.rank, m_search, active, activeSearch};
 	parallelFor(
 		static_cast<Index>(m_voters.size()),
 		progress.sub(0.0, 0.9, "Fitting surfaces"),
@@ -289,7 +312,7 @@ void RobustVote::measureNoise(const Progress& progress)
 		deviations.push_back(m_voters[witnesses[k]].deviation());
 	}
 	const NeighborSearch search(origins);
-	const Index          around = std::max(noiseWitnesses, 2 * m_neighbors / m_step);
+	const Index          around = std::max(noiseWitnesses, 2 * votesPerPoint);
 	parallelFor(static_cast<Index>(m_voters.size()), progress, [&](Index v) {
 		OutlierVoter& voter = m_voters[v];
 		if (!voter.surface.valid)
@@ -428,11 +451,14 @@ double RobustVote::noise() const
 OutlierResult RobustVote::result() const
 {
 	OutlierResult result;
-	result.outlier  = m_rejected;
+	result.outlier.resize(size());
+	result.score.resize(size());
+	for (Index i = 0; i < size(); ++i) {
+		result.outlier[m_order.source[i]] = m_rejected[i];
+		result.score[m_order.source[i]]   = m_verdicts[i].against;
+	}
 	result.isolated = m_isolated;
 	result.noise    = noise();
-	for (const Verdict& verdict : m_verdicts)
-		result.score.push_back(verdict.against);
 	return result;
 }
 

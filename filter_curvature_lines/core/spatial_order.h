@@ -1,0 +1,25 @@
+// An order of the points in which near ones follow each other, so that a cache holds what they share.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shuffled_order.h"
+
+namespace curvature_lines {
+
+// Columns of a 3 x N matrix.
+Eigen::Matrix3Xd columnsOf(const Eigen::Matrix3Xd& columns, const std::vector<Index>& which);
+
+// Place k in the order belongs to point source[k] of the cloud, whose place in shuffledOrder() is rank[k]:
+// the points with rank[k] < m are a fair sample of m points. Neither depends on the order of the cloud.
+struct SpatialOrder {
+	std::vector<Index> source, rank;
+
+	explicit SpatialOrder(const Eigen::Matrix3Xd& positions); // along a Morton curve
+	// Places of the first m points of the shuffled order, ascending.
+	std::vector<Index> sample(Index m) const;
+	// 3 x N columns of the cloud in this order, and back.
+	Eigen::Matrix3Xd arrange(const Eigen::Matrix3Xd& columns) const;
+	Eigen::Matrix3Xd restore(const Eigen::Matrix3Xd& columns) const;
+};
+
+} // namespace curvature_lines

@@ -375,7 +375,6 @@ std::vector<CreasePoint> Network::betweenCorners(Index trace) const
 		if (corner < 0)
 			continue;
 		const double      outward = side == 0 ? -1.0 : 1.0;
-		const CreasePoint end     = path.back();
 		while (path.size() > 1 &&
 			   (m_corners[corner] - path.back().position).dot(outward * path.back().tangent) < 0.4 * m_step)
 			path.pop_back();

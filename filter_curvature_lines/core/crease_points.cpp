@@ -21,21 +21,22 @@ constexpr double spacingsInRadius = 4.5;  // of the ball that holds so many poin
 constexpr double noiseInRadius    = 6.0;  // the ball is no smaller than this many noise levels
 constexpr Index  noisePoints      = 2000; // where the noise is measured
 constexpr double largestTurn      = 0.5;  // of a normal along which a face is continued
-constexpr double groupShare       = 0.5;  // of the smallest angle: normals of one face
+constexpr double groupShare       = 0.85;  // of the smallest angle: normals of one face
 constexpr int    maxFaces         = 6;
-constexpr int    minMembers       = 5;
+constexpr int    minMembers       = 3;
 constexpr double largestAngle     = 165.0 * EIGEN_PI / 180.0; // two sheets back to back are no crease
 constexpr double supportSpacings  = 3.0; // distance from the crease to points of its faces
 constexpr double supportNoise     = 2.5;
-constexpr double sideShare        = 0.85; // of a face's points on its side of the crease
+constexpr double sideShare        = 0.7; // of a face's points on its side of the crease
 constexpr double outlierScales    = 3.0;
 
-// The points around one that belong together, continued to other places.
+// The points around one that belong together, continued to other places. Holds the scratch of one thread.
 class FacesAround {
 public:
-	FacesAround(const std::vector<SurfaceElement>& elements, const NeighborSearch& search) :
-			m_elements(elements), m_search(search)
+	static FacesAround& ofThisThread()
 	{
+		thread_local FacesAround around;
+		return around;
 	}
 
 	double radius() const { return m_radius; }
@@ -44,26 +45,30 @@ public:
 	int    members(int face) const { return m_count[face]; }
 
 	// Face 0 is that of point i.
-	void group(Index i, double noise, double gate)
+	void group(
+		const std::vector<SurfaceElement>& elements,
+		const NeighborSearch&              search,
+		Index                              i,
+		double                             noise,
+		double                             gate)
 	{
-		const Vector3d position = m_elements[i].position;
-		m_near                  = m_search.nearest(position, neighbors);
-		m_radius = (m_elements[m_near.back()].position - position).norm();
+		const Vector3d position = elements[i].position;
+		m_elements              = &elements;
+		m_near                  = search.nearest(position, neighbors);
+		m_radius                = (elements[m_near.back()].position - position).norm();
 		m_spacing = m_radius / spacingsInRadius;
 		if (m_radius < noiseInRadius * noise) {
 			m_radius = noiseInRadius * noise;
-			m_near   = m_search.within(position, m_radius);
+			m_near   = search.within(position, m_radius);
 		}
 		m_face.assign(m_near.size(), -1);
 		m_weight.assign(m_near.size(), 0.0);
 		m_faces = 1;
 		m_count = {};
 		std::array<Vector3d, maxFaces> sums;
-		sums[0] = m_elements[i].normal;
+		sums[0] = elements[i].normal;
 		for (std::size_t k = 0; k < m_near.size(); ++k) {
-			const SurfaceElement& e = m_elements[m_near[k]];
-			if (!e.valid)
-				continue;
+			const SurfaceElement& e = elements[m_near[k]];
 			const Vector3d d    = position - e.position;
 			const Vector3d turn = e.shape * d;
 			if (turn.norm() > largestTurn)
@@ -105,7 +110,7 @@ public:
 		for (std::size_t k = 0; k < m_near.size(); ++k) {
 			if (m_face[k] != face || m_near[k] == skipped)
 				continue;
-			const SurfaceElement& e    = m_elements[m_near[k]];
+			const SurfaceElement& e    = (*m_elements)[m_near[k]];
 			const Vector3d        d    = place - e.position;
 			const Vector3d        turn = e.shape * d;
 			if (turn.norm() > largestTurn)
@@ -127,7 +132,7 @@ public:
 		double   total = 0.0;
 		for (std::size_t k = 0; k < m_near.size(); ++k)
 			if (m_face[k] == face) {
-				sum += m_weight[k] * m_elements[m_near[k]].position;
+				sum += m_weight[k] * (*m_elements)[m_near[k]].position;
 				total += m_weight[k];
 			}
 		return sum / total;
@@ -140,7 +145,7 @@ public:
 		for (std::size_t k = 0; k < m_near.size(); ++k) {
 			if (m_face[k] != face)
 				continue;
-			const Vector3d d = m_elements[m_near[k]].position - place;
+			const Vector3d d = (*m_elements)[m_near[k]].position - place;
 			inside += d.dot(inward) > -0.5 * reach;
 			near += d.squaredNorm() < reach * reach;
 		}
@@ -167,8 +172,7 @@ private:
 		return sum / total;
 	}
 
-	const std::vector<SurfaceElement>&     m_elements;
-	const NeighborSearch&                  m_search;
+	const std::vector<SurfaceElement>*     m_elements = nullptr;
 	double                                 m_radius = 0.0, m_spacing = 0.0;
 	int                                    m_faces = 0;
 	std::array<int, maxFaces>              m_count = {};
@@ -245,10 +249,8 @@ CreasePoints findCreasePoints(
 	CreasePoints        result;
 	std::vector<double> heights(std::min(n, noisePoints), -1.0);
 	parallelFor(static_cast<Index>(heights.size()), {}, [&](Index i) {
-		if (!elements[i].valid)
-			return;
-		FacesAround around(elements, search);
-		around.group(i, 0.0, gate);
+		FacesAround& around = FacesAround::ofThisThread();
+		around.group(elements, search, i, 0.0, gate);
 		if (const auto plane = around.planeAt(0, elements[i].position, i); plane.valid)
 			heights[i] = std::abs(plane.height);
 	});
@@ -259,11 +261,8 @@ CreasePoints findCreasePoints(
 
 	std::vector<std::vector<CreasePoint>> rows(n);
 	parallelFor(n, progress, [&](Index i) {
-		if (!elements[i].valid)
-			return;
-		thread_local std::unique_ptr<FacesAround> scratch;
-		FacesAround around(elements, search);
-		around.group(i, result.noise, gate);
+		FacesAround& around = FacesAround::ofThisThread();
+		around.group(elements, search, i, result.noise, gate);
 		for (int face = 1; face < around.faces(); ++face) {
 			CreasePoint point;
 			if (around.members(face) >= minMembers &&

@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 constexpr double window        = 3.0;  // local spacings along the curve
 constexpr double widthSpacings = 1.5;
 constexpr double widthNoise    = 2.5;
-constexpr double sameTangent   = 0.8;  // cosines
-constexpr double sameNormal    = 0.85;
-constexpr int    minSupport    = 4;    // points within one spacing along the curve
+constexpr double sameTangent   = 0.7;  // cosines
+constexpr double sameNormal    = 0.75;
+constexpr int    minSupport    = 3;    // points within one spacing along the curve
 constexpr double tracedShare   = 0.6;
 constexpr double robustScale   = 2.5;
 

@@ -38,7 +38,7 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 		const SurfaceElement&    own    = elements[i];
 		const std::vector<Index> near   = search.nearest(own.position, shapeNeighbors);
 		const double             radius = (elements[near.back()].position - own.position).norm() * 1.05;
-		std::vector<Index>       same;
+		thread_local std::vector<Index> same;
 		SurfaceElement           fit = own;
 		double                   gate = firstGate;
 		for (int it = 0; it < shapeIterations; ++it, gate = std::max(lastGate, 0.5 * gate)) {

@@ -1,0 +1,14 @@
+// Traced creases as a network: joined over gaps, ended in common corners, evenly resampled. Internal to
+// creases.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "crease_tracing.h"
+#include "creases.h"
+
+namespace curvature_lines {
+
+// `traces` as traced with vertices `step` apart.
+Creases creaseNetwork(const CreaseTracing& tracing, std::vector<CreaseTrace> traces, double step);
+
+} // namespace curvature_lines

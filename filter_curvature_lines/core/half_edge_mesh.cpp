@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include <Eigen/Geometry>
+
+#include "disjoint_sets.h"
 
 namespace curvature_lines {
 
@@ -18,21 +19,6 @@ namespace {
 // Edges that meet at more than 155 degrees continue each other. Others form the corner of a face,
 // where two lines end together: along a rim, that is where the quads are.
 constexpr double StraightCosine = -0.9;
-
-class DisjointSets {
-public:
-	explicit DisjointSets(Index n) : m_parent(n) { std::iota(m_parent.begin(), m_parent.end(), 0); }
-	Index find(Index i)
-	{
-		while (m_parent[i] != i)
-			i = m_parent[i] = m_parent[m_parent[i]];
-		return i;
-	}
-	void join(Index i, Index j) { m_parent[find(i)] = find(j); }
-
-private:
-	std::vector<Index> m_parent;
-};
 
 // One side of a face, named so that both faces of an edge sort together.
 struct FaceSide {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include <Eigen/Geometry>
+
+#include "disjoint_sets.h"
 
 namespace curvature_lines {
 
@@ -18,21 +19,6 @@ namespace {
 // Edges that meet at more than 155 degrees continue each other. Others form the corner of a face,
 // where two lines end together: along a rim, that is where the quads are.
 constexpr double StraightCosine = -0.9;
-
-class DisjointSets {
-public:
-	explicit DisjointSets(Index n) : m_parent(n) { std::iota(m_parent.begin(), m_parent.end(), 0); }
-	Index find(Index i)
-	{
-		while (m_parent[i] != i)
-			i = m_parent[i] = m_parent[m_parent[i]];
-		return i;
-	}
-	void join(Index i, Index j) { m_parent[find(i)] = find(j); }
-
-private:
-	std::vector<Index> m_parent;
-};
 
 // One side of a face, named so that both faces of an edge sort together.
 struct FaceSide {
@@ -165,6 +151,17 @@ HalfEdgeGraph::HalfEdgeGraph(
 	}
 }
 
+HalfEdgeGraph::HalfEdgeGraph(
+	Eigen::Matrix3Xd                positions,
+	Eigen::Matrix3Xd                normals,
+	std::vector<Edge>               edges,
+	std::vector<std::vector<Index>> around,
+	std::vector<char>               kept) :
+		m_positions(std::move(positions)), m_normals(std::move(normals)), m_edges(std::move(edges)),
+		m_alive(m_edges.size(), 1), m_kept(std::move(kept)), m_around(std::move(around))
+{
+}
+
 bool HalfEdgeGraph::removeEdge(Index edge)
 {
 	if (!alive(edge))
@@ -190,14 +187,20 @@ bool HalfEdgeGraph::cutDanglingEdges()
 	return changed;
 }
 
+bool HalfEdgeGraph::continuesStraight(Index vertex) const
+{
+	const Eigen::Vector3d& a = tangent(m_around[vertex][0]);
+	const Eigen::Vector3d& b = tangent(m_around[vertex][1]);
+	return a.dot(b) <= StraightCosine * a.norm() * b.norm();
+}
+
 bool HalfEdgeGraph::dissolveDegreeTwo()
 {
 	bool changed = false;
 	for (Index v = 0; v < vertexCount(); ++v) {
 		if (m_around[v].size() != 2 || m_around[v][0] >> 1 == m_around[v][1] >> 1)
 			continue;
-		const Eigen::Vector3d t0 = tangent(m_around[v][0]), t1 = tangent(m_around[v][1]);
-		if (t0.dot(t1) > StraightCosine * t0.norm() * t1.norm())
+		if (m_kept.empty() ? !continuesStraight(v) : m_kept[v] != 0)
 			continue;
 		// The first edge grows over the second; its half-edge that left v now leaves the far end.
 		const Index grown = m_around[v][0], merged = m_around[v][1];
@@ -207,6 +210,7 @@ bool HalfEdgeGraph::dissolveDegreeTwo()
 		(grown & 1 ? edge.tangentTo : edge.tangentFrom) = tangent(twin(merged));
 		edge.middle                                     = m_positions.col(v);
 		edge.middleNormal                               = m_normals.col(v);
+		edge.isFeature = edge.isFeature && m_edges[merged >> 1].isFeature;
 		std::replace(m_around[end].begin(), m_around[end].end(), twin(merged), grown);
 		m_alive[merged >> 1] = 0;
 		m_around[v].clear();
@@ -226,17 +230,20 @@ bool HalfEdgeGraph::isThin(Index edgeA, Index edgeB) const
 	return width < 0.25 * chord;
 }
 
-bool HalfEdgeGraph::removeThinDigons()
+bool HalfEdgeGraph::removeDigons()
 {
 	bool changed = false;
 	for (const std::vector<Index>& loop : faceLoops()) {
+		if (loop.size() > 2)
+			continue;
 		const bool live =
 			std::all_of(loop.begin(), loop.end(), [&](Index h) { return alive(h >> 1); });
-		if (!live)
+		const Index first = loop[0] >> 1, second = loop.back() >> 1;
+		if (!live || (loop.size() == 2 && (first == second || (m_kept.empty() && !isThin(first, second)))))
 			continue;
-		const bool digon = loop.size() == 2 && loop[0] >> 1 != loop[1] >> 1;
-		if (loop.size() == 1 || (digon && isThin(loop[0] >> 1, loop[1] >> 1)))
-			changed = removeEdge(loop[0] >> 1) || changed;
+		const Index gone = m_edges[first].isFeature ? second : first;
+		if (!m_edges[gone].isFeature)
+			changed = removeEdge(gone) || changed;
 	}
 	return changed;
 }
@@ -246,7 +253,7 @@ void HalfEdgeGraph::reduce()
 	for (bool changed = true; changed;) {
 		changed = cutDanglingEdges();
 		changed = dissolveDegreeTwo() || changed;
-		changed = removeThinDigons() || changed;
+		changed = removeDigons() || changed;
 	}
 }
 
@@ -260,6 +267,8 @@ Index HalfEdgeGraph::addVertex(const Eigen::Vector3d& position, const Eigen::Vec
 	m_positions.col(v) = position;
 	m_normals.col(v)   = normal;
 	m_around.emplace_back();
+	if (!m_kept.empty())
+		m_kept.push_back(0);
 	return v;
 }
 

@@ -34,9 +34,21 @@ public:
 		Index           from, to;
 		Eigen::Vector3d tangentFrom, tangentTo; // directions leaving each end along the edge
 		Eigen::Vector3d middle, middleNormal;   // a point of the surface about half-way along
+		bool            isFeature = false;      // a piece of a rim or crease: stays
+		signed char     outside   = -1;         // along rims: 0 or 1, half-edge 2e or 2e + 1 runs outside
 	};
 
+	// Half-edges are sorted by their tangents.
 	HalfEdgeGraph(Eigen::Matrix3Xd positions, Eigen::Matrix3Xd normals, std::vector<Edge> edges);
+
+	// Half-edges are in the order given: the embedding is exact and tangents are not used. Every vertex of
+	// degree two dissolves then, unless it is `kept`, and every face of two sides goes.
+	HalfEdgeGraph(
+		Eigen::Matrix3Xd                positions,
+		Eigen::Matrix3Xd                normals,
+		std::vector<Edge>               edges,
+		std::vector<std::vector<Index>> around,
+		std::vector<char>               kept);
 
 	static Index twin(Index h) { return h ^ 1; }
 	Index        origin(Index h) const { return h & 1 ? m_edges[h >> 1].to : m_edges[h >> 1].from; }
@@ -52,12 +64,16 @@ public:
 	bool removeEdge(Index edge); // merges the faces on its two sides
 	bool cutDanglingEdges();     // chains that end in a vertex of degree one, repeatedly
 	bool dissolveDegreeTwo();    // joins the two edges of a vertex where they continue each other
-	bool removeThinDigons(); // one side of faces with two sides that lie close; faces with one side
+	bool removeDigons(); // one side of faces with two sides, of which it keeps open ones unless the
+						 // embedding is exact; faces with one side
 	void reduce();           // all of them until nothing changes
 
 	// Puts vertices on edges that join the same two vertices as another, or a vertex with itself,
 	// so that a pair of vertices names an edge.
 	void separateParallelEdges();
+
+	// Whether a half-edge runs along the outside of a rim.
+	bool isOutside(Index h) const { return m_edges[h >> 1].outside == (h & 1); }
 
 	// Arriving at v by h, a face goes on with the clockwise next of twin(h). Every live half-edge
 	// is in exactly one loop.
@@ -74,12 +90,14 @@ public:
 
 private:
 	bool  isThin(Index edgeA, Index edgeB) const;
+	bool  continuesStraight(Index vertex) const;
 	void  splitEdge(Index edge);
 	Index addVertex(const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
 
 	Eigen::Matrix3Xd                m_positions, m_normals;
 	std::vector<Edge>               m_edges;
 	std::vector<char>               m_alive;
+	std::vector<char>               m_kept; // per vertex; empty unless the embedding is exact
 	std::vector<std::vector<Index>> m_around;
 };
 

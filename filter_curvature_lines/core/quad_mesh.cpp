@@ -10,6 +10,7 @@
 #include "face_loops.h"
 #include "line_arrangement.h"
 #include "polygon_splitting.h"
+#include "polygons.h"
 
 namespace curvature_lines {
 
@@ -19,43 +20,11 @@ using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
 constexpr double SmallHole   = 12.0; // perimeter in median edges
-constexpr double CollarWidth = 0.3;  // of the way to the centre
 constexpr Index  Crumb       = 4;    // faces
-
-// Polygons still in the numbering of the graph, with vertices added at the end.
-struct Polygons {
-	std::vector<Vector3d> vertices, normals;
-	std::vector<Face>     faces;
-};
-
-// A disk whose border visits a vertex twice gets a ring of quads along its border, after which no
-// face does: V and F grow by its n corners (F by n for n - 1 + 1), E by 2 n.
-void addCollared(const Face& border, Polygons& polygons)
-{
-	const Index n      = static_cast<Index>(border.size()),
-				first  = static_cast<Index>(polygons.vertices.size());
-	Vector3d    center = Vector3d::Zero();
-	for (Index v : border)
-		center += polygons.vertices[v] / n;
-	Face inner;
-	for (Index k = 0; k < n; ++k) {
-		const Index v = border[k], w = border[(k + 1) % n];
-		polygons.vertices.push_back(
-			polygons.vertices[v] + CollarWidth * (center - polygons.vertices[v]));
-		polygons.normals.push_back(polygons.normals[v]);
-		polygons.faces.push_back({v, w, first + (k + 1) % n, first + k});
-		inner.push_back(first + k);
-	}
-	polygons.faces.push_back(inner);
-}
 
 Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadMeshResult& result)
 {
-	Polygons polygons;
-	for (Index v = 0; v < graph.vertexCount(); ++v) {
-		polygons.vertices.push_back(graph.positions().col(v));
-		polygons.normals.push_back(graph.normals().col(v));
-	}
+	Polygons polygons(graph);
 	for (const std::vector<Index>& loop : graph.faceLoops()) {
 		const LoopKind kind = kindOf(loop);
 		if (kind != LoopKind::Face) {
@@ -66,13 +35,7 @@ Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadM
 		Face face;
 		for (Index h : loop)
 			face.push_back(graph.origin(h));
-		Face sorted = face;
-		std::sort(sorted.begin(), sorted.end());
-		const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-		if (simple)
-			polygons.faces.push_back(face);
-		else
-			addCollared(face, polygons);
+		polygons.addDisk(face);
 	}
 	return polygons;
 }

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numeric>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "disjoint_sets.h"
 
 namespace curvature_lines {
 
@@ -63,26 +64,6 @@ std::vector<char> medianFiltered(
 	}
 	return filtered;
 }
-
-class DisjointSets {
-public:
-	explicit DisjointSets(Index n) : m_parent(n) { std::iota(m_parent.begin(), m_parent.end(), 0); }
-	Index find(Index i)
-	{
-		while (m_parent[i] != i)
-			i = m_parent[i] = m_parent[m_parent[i]];
-		return i;
-	}
-	void join(Index i, Index j) // the lowest index of a set stays its root
-	{
-		i = find(i);
-		j = find(j);
-		m_parent[std::max(i, j)] = std::min(i, j);
-	}
-
-private:
-	std::vector<Index> m_parent;
-};
 
 // Numbers the components of umbilic points, those of at least minRegion points, by their first
 // point.

@@ -221,7 +221,7 @@ TEST(HalfEdgeGraph, EveryReductionKeepsTheEulerNumber)
 		ASSERT_EQ(graph.eulerCharacteristic(), 2);
 		graph.dissolveDegreeTwo();
 		EXPECT_EQ(graph.eulerCharacteristic(), 2);
-		graph.removeThinDigons();
+		graph.removeDigons();
 		EXPECT_EQ(graph.eulerCharacteristic(), 2);
 		graph.cutDanglingEdges();
 		EXPECT_EQ(graph.eulerCharacteristic(), 2);

@@ -1,0 +1,64 @@
+// CGAL's advancing front with a bound on edges: without one it closes open surfaces with long triangles.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "advancing_front.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <CGAL/Advancing_front_surface_reconstruction.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+namespace curvature_lines {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+// CGAL's own priority, the radius of the smallest empty ball, unless an edge is too long.
+struct BoundedPriority {
+	double longestSquared;
+
+	template<class Front, class CellHandle>
+	double operator()(const Front& front, CellHandle& cell, const int& facet) const
+	{
+		for (int a = 1; a <= 3; ++a) {
+			const auto& p = cell->vertex((facet + a) % 4)->point();
+			const auto& q = cell->vertex((facet + a % 3 + 1) % 4)->point();
+			if (CGAL::squared_distance(p, q) > longestSquared)
+				return front.infinity();
+		}
+		return front.smallest_radius_delaunay_sphere(cell, facet);
+	}
+};
+
+} // namespace
+
+std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, double longestEdge)
+{
+	std::vector<Triangle> triangles;
+	if (points.cols() < 4)
+		return triangles;
+	std::vector<Kernel::Point_3> input;
+	input.reserve(points.cols());
+	for (Eigen::Index i = 0; i < points.cols(); ++i)
+		input.emplace_back(points(0, i), points(1, i), points(2, i));
+	std::vector<std::array<std::size_t, 3>> found;
+	CGAL::advancing_front_surface_reconstruction(
+		input.begin(),
+		input.end(),
+		std::back_inserter(found),
+		BoundedPriority{longestEdge * longestEdge});
+	triangles.reserve(found.size());
+	for (const auto& t : found)
+		triangles.push_back(
+			{static_cast<Index>(t[0]), static_cast<Index>(t[1]), static_cast<Index>(t[2])});
+	// CGAL's order and side follow addresses.
+	std::sort(triangles.begin(), triangles.end(), [](Triangle a, Triangle b) {
+		std::sort(a.begin(), a.end());
+		std::sort(b.begin(), b.end());
+		return a < b;
+	});
+	return triangles;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,13 @@
+// Triangles between points of a surface: CGAL's advancing front (Cohen-Steiner and Da 2004).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "triangle_mesh.h"
+
+namespace curvature_lines {
+
+// Triangles without an edge longer than `longestEdge`, sorted by their vertices; oriented alike where they
+// hang together, to either side.
+std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, double longestEdge);
+
+} // namespace curvature_lines

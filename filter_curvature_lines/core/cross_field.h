@@ -1,0 +1,58 @@
+// The field of crosses on the scaffold: principal directions smoothed as far as their errors ask for, with
+// the smoothest continuation through umbilic and flat parts (Knoeppel et al. 2013, for crosses; the energy
+// of A09 section 4.3 with exp(4 i theta)). A cross is what spheres, flat faces and creases need.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <complex>
+
+#include "robust_curvature.h"
+#include "scaffold.h"
+
+namespace curvature_lines {
+
+using Complex = std::complex<double>;
+
+// What is known about the directions at the vertices of the scaffold.
+struct DirectionGuide {
+	Eigen::Matrix3Xd  normals, directions; // 3 x V, unit; one of the four arms of the cross
+	Eigen::VectorXd   weights;             // V, 0: nothing is known
+	std::vector<char> onCrease;            // V: the normal is between those of two faces
+};
+
+struct CrossField {
+	Eigen::Matrix3Xd  normals, d1, d2; // 3 x V: arms of the cross, d2 = n x d1; which two is arbitrary
+	std::vector<char> onCrease;        // V
+	// Per edge: the frame at `to` sees a direction turned by so many quarters against the frame at `from`:
+	// z_to = i^turns z_from.
+	std::vector<std::uint8_t> turns;
+	// Per triangle: the sum of the turns around it, 0..3; not 0: a singular point of the field.
+	std::vector<std::uint8_t> index;
+
+	Index singularTriangles() const;
+};
+
+// Confidence from the standard error of k1 - k2; creases fix the direction along them. Vertices that are no
+// points of the cloud get their normals from the triangles around.
+DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& curvature);
+
+CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guide);
+
+// `d` turned with the smallest rotation that takes unit vector `from` to unit vector `to`.
+Eigen::Vector3d transported(
+	const Eigen::Vector3d& d, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+// i^quarters z, exactly.
+Complex turned(const Complex& z, int quarters);
+
+// Which family of the other frame, and with which sign, is family f (0: real, 1: imaginary part) of
+// i^-turns z.
+struct FamilyImage {
+	int family, sign;
+};
+FamilyImage familyBehind(int turns, int f);
+
+// Turns of every corner's frame against the one of corner 0: z_c = i^turns z_0.
+std::array<int, 3> cornerTurns(const TriangleMesh& mesh, const CrossField& field, Index triangle);
+
+} // namespace curvature_lines

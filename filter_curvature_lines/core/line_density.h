@@ -1,0 +1,49 @@
+// How many lines of each family a unit of length meets: the target number of vertices, closer lines across
+// strong bends, and the correction that makes the lines end as seldom as possible.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <complex>
+
+#include "cross_field.h"
+
+namespace curvature_lines {
+
+struct LineDensityOptions {
+	double targetVertices = 1600.0;
+	double anisotropy     = 1.5;  // largest ratio of the spacings of both families that curvature asks for
+	double evenness       = 10.0; // how much uneven spacing costs against lines that end
+};
+
+// Row f: lines of family f per length, met when walking along d1 (f = 0) or d2 (f = 1).
+using LineDensity = Eigen::Matrix2Xd; // 2 x V
+
+// Curvature only tells the anisotropy.
+LineDensity lineDensity(
+	const Scaffold&           scaffold,
+	const CrossField&         field,
+	const CurvatureField&     curvature,
+	const LineDensityOptions& options);
+
+// Vertices a quad mesh with these lines has: crossings, and lines that meet a rim.
+double expectedVertices(
+	const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
+
+// The increase of the two phases (real: family 0, imaginary: family 1) along every edge, in lines, in the
+// frame at its start. A crease vertex, whose frame is tilted against the faces beside it, does not speak
+// for edges that leave the crease.
+Eigen::VectorXcd
+expectedRise(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
+
+// A triangle in the frame of its corner 0.
+struct TriangleField {
+	std::array<int, 3>             turns;    // of the frames at the corners against that one
+	Eigen::Matrix3d                gradient; // column c: gradient of the hat function of corner c
+	std::array<Eigen::Vector3d, 2> target;   // gradients the phases should have
+	Eigen::Vector3d                normal;
+	double                         area = 0.0;
+};
+TriangleField triangleField(
+	const TriangleMesh& mesh, const CrossField& field, const LineDensity& density, Index triangle);
+
+} // namespace curvature_lines

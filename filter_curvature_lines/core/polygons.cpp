@@ -1,0 +1,73 @@
+// Disks whose border visits a vertex twice, and compact meshes.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "polygons.h"
+
+#include <algorithm>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double collarWidth = 0.3; // of the way to the centre
+
+}
+
+Polygons::Polygons(const HalfEdgeGraph& graph)
+{
+	for (Index v = 0; v < graph.vertexCount(); ++v) {
+		vertices.push_back(graph.positions().col(v));
+		normals.push_back(graph.normals().col(v));
+	}
+}
+
+void Polygons::addDisk(const std::vector<Index>& border)
+{
+	std::vector<Index> sorted = border;
+	std::sort(sorted.begin(), sorted.end());
+	if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) {
+		faces.push_back(border);
+		return;
+	}
+	const Index n = static_cast<Index>(border.size()), first = static_cast<Index>(vertices.size());
+	Eigen::Vector3d center = Eigen::Vector3d::Zero();
+	for (const Index v : border)
+		center += vertices[v] / n;
+	std::vector<Index> inner;
+	for (Index k = 0; k < n; ++k) {
+		const Index v = border[k], w = border[(k + 1) % n];
+		vertices.push_back(vertices[v] + collarWidth * (center - vertices[v]));
+		normals.push_back(normals[v]);
+		faces.push_back({v, w, first + (k + 1) % n, first + k});
+		inner.push_back(first + k);
+	}
+	faces.push_back(inner);
+}
+
+PolygonMesh Polygons::mesh(std::vector<Index>* nameOf) const
+{
+	std::vector<Index> names(vertices.size(), -1), sources;
+	for (const std::vector<Index>& face : faces)
+		for (const Index v : face)
+			names[v] = 0;
+	for (std::size_t v = 0; v < names.size(); ++v) {
+		if (names[v] < 0)
+			continue;
+		names[v] = static_cast<Index>(sources.size());
+		sources.push_back(static_cast<Index>(v));
+	}
+	PolygonMesh result;
+	result.vertices.resize(3, sources.size());
+	result.normals.resize(3, sources.size());
+	for (std::size_t v = 0; v < sources.size(); ++v) {
+		result.vertices.col(v) = vertices[sources[v]];
+		result.normals.col(v)  = normals[sources[v]];
+	}
+	result.faces = NeighborLists::fromRows(faces);
+	for (Index& v : result.faces.indices)
+		v = names[v];
+	if (nameOf)
+		*nameOf = std::move(names);
+	return result;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,38 @@
+// The position field: two phases on the scaffold whose gradients are the arms of the crosses times the line
+// density. Lines of the mesh run where a phase is an integer. A periodic start by the smallest eigenvector
+// finds where lines end (Ray et al. 2006, Knoeppel et al. 2015), a real least-squares fit then places them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "line_density.h"
+
+namespace curvature_lines {
+
+// Vertices where a phase is an integer, because they lie on a rim or crease along the other arm.
+struct PhasePins {
+	std::array<std::vector<char>, 2> fixed; // per family and vertex
+
+	explicit PhasePins(Index vertices = 0) : fixed{std::vector<char>(vertices, 0), std::vector<char>(vertices, 0)} {}
+};
+
+struct PositionFieldOptions {
+	double startDrift = 10.0;  // cost of drifting along a line over that of uneven spacing: in the start
+	double fitDrift   = 100.0; // and in the fit
+	int    rounds     = 2;     // of the fit, jumps found anew in each
+};
+
+struct PositionField {
+	Eigen::VectorXcd phase; // per vertex, in its frame
+	// Per edge: what the phase becomes at `to`, in the frame of `from`: i^-turns phase(to) + whole numbers.
+	Eigen::VectorXcd end;
+	Index lineEnds = 0; // triangles in which a line of either family ends
+};
+
+PositionField positionField(
+	const TriangleMesh&         mesh,
+	const CrossField&           field,
+	const LineDensity&          density,
+	const PhasePins&            pins,
+	const PositionFieldOptions& options = {});
+
+} // namespace curvature_lines

@@ -1,0 +1,129 @@
+// The stages in their order, and one correction of the number of vertices.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "position_field_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "polygon_splitting.h"
+#include "surface_arrangement.h"
+#include "surface_projection.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double countTolerance = 0.03; // beyond, the density is corrected once
+
+struct Traced {
+	SurfaceArrangement arrangement;
+	Index              lineEnds = 0;
+};
+
+Traced trace(
+	const Scaffold&                 scaffold,
+	const CrossField&               field,
+	const LineDensity&              density,
+	const PhasePins&                pins,
+	const SurfaceFeatures&          features,
+	const PositionFieldMeshOptions& options)
+{
+	const PositionField positions =
+		positionField(scaffold.mesh, field, density, pins, options.phases);
+	return {
+		arrangeOnSurface(
+			scaffold.mesh,
+			field.normals,
+			features,
+			integerLines(scaffold.mesh, field, positions)),
+		positions.lineEnds};
+}
+
+void projectVertices(
+	const PointCloud&        cloud,
+	const CurvatureField&    curvature,
+	const std::vector<char>& fixed,
+	PolygonMesh&             mesh,
+	const Progress&          progress)
+{
+	const NeighborSearch search(cloud.positions);
+	parallelFor(mesh.vertexCount(), progress, [&](Index v) {
+		if (fixed[v])
+			return;
+		const Eigen::Vector3d p       = mesh.vertices.col(v);
+		const Index           closest = search.nearest(p, 1)[0];
+		const SurfaceSample   sample =
+			projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
+		mesh.vertices.col(v) = sample.position;
+		mesh.normals.col(v)  = sample.normal;
+	});
+}
+
+} // namespace
+
+PositionFieldMeshResult buildPositionFieldMesh(
+	const PointCloud&               cloud,
+	const CurvatureField&           curvature,
+	const std::vector<FeatureLine>& creases,
+	const PositionFieldMeshOptions& options,
+	const Progress&                 progress)
+{
+	PositionFieldMeshResult result;
+	ScaffoldOptions         forScaffold = options.scaffold;
+	forScaffold.targetVertices          = options.targetVertices;
+	forScaffold.noise                   = options.noise;
+	const Scaffold scaffold =
+		buildScaffold(cloud, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
+	const TriangleMesh& mesh  = scaffold.mesh;
+	result.scaffoldVertices   = mesh.vertexCount();
+	result.scaffoldEuler      = mesh.eulerCharacteristic();
+	result.droppedComponents  = scaffold.droppedComponents;
+	result.filledHoles        = scaffold.filledHoles;
+	result.lostCreaseEdges    = scaffold.lostCreaseEdges;
+	if (mesh.triangleCount() == 0)
+		return result;
+
+	const CrossField field   = smoothCrossField(mesh, directionGuide(scaffold, curvature));
+	result.singularTriangles = field.singularTriangles();
+	progress.report(0.4);
+	const PhasePins    pins(mesh.vertexCount());
+	SurfaceFeatures    features{scaffold.creaseEdge, std::vector<char>(mesh.vertexCount(), 0)};
+	LineDensityOptions wanted;
+	wanted.targetVertices = options.targetVertices;
+	wanted.anisotropy     = options.anisotropy;
+	LineDensity density   = lineDensity(scaffold, field, curvature, wanted);
+	progress.report(0.5);
+	Traced       traced = trace(scaffold, field, density, pins, features, options);
+	const double ratio  = traced.arrangement.mesh.vertexCount() / options.targetVertices;
+	progress.report(0.7);
+	if (ratio > 0.0 && std::abs(ratio - 1.0) > countTolerance) {
+		density /= std::sqrt(ratio);
+		Traced       again = trace(scaffold, field, density, pins, features, options);
+		const double next  = again.arrangement.mesh.vertexCount() / options.targetVertices;
+		if (std::abs(next - 1.0) < std::abs(ratio - 1.0))
+			traced = std::move(again);
+	}
+	result.lineEnds           = traced.lineEnds;
+	result.crossings          = traced.arrangement.crossings;
+	result.repairedComponents = traced.arrangement.repairedComponents;
+	result.droppedComponents += traced.arrangement.lostComponents;
+	progress.report(0.9);
+
+	result.mesh = std::move(traced.arrangement.mesh);
+	PolygonSplitter splitter(result.mesh);
+	splitter.cutLargeFaces();
+	splitter.pairWithPentagons();
+	result.mesh = splitter.mesh();
+	projectVertices(
+		cloud,
+		curvature,
+		traced.arrangement.onFeature,
+		result.mesh,
+		progress.sub(0.95, 1.0, "Projecting vertices"));
+	result.topology = topologyOf(result.mesh);
+	return result;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,37 @@
+// The curvature-aligned quad mesh from a position field: scaffold, crosses, line density, phases,
+// arrangement, clean-up, and projection of the vertices onto the surface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "position_field.h"
+#include "quad_mesh.h"
+#include "scaffold.h"
+
+namespace curvature_lines {
+
+struct PositionFieldMeshOptions {
+	double               targetVertices = 1600.0;
+	double               anisotropy     = 1.5; // largest ratio of spacings that curvature asks for; 1: none
+	double               noise          = 0.0; // left in the cloud, a length
+	ScaffoldOptions      scaffold; // its target and noise are set from the above
+	PositionFieldOptions phases;
+	QuadMeshOptions      mesh;
+};
+
+struct PositionFieldMeshResult : QuadMeshResult {
+	Index scaffoldVertices = 0, scaffoldEuler = 0;
+	Index singularTriangles = 0, lineEnds = 0;
+	Index droppedComponents = 0; // too small for a mesh, or without any line
+	Index repairedComponents = 0;
+	Index filledHoles = 0, lostCreaseEdges = 0;
+};
+
+// The cloud is clean and its normals those of the surface.
+PositionFieldMeshResult buildPositionFieldMesh(
+	const PointCloud&               cloud,
+	const CurvatureField&           curvature,
+	const std::vector<FeatureLine>& creases  = {},
+	const PositionFieldMeshOptions& options  = {},
+	const Progress&                 progress = {});
+
+} // namespace curvature_lines

@@ -1,0 +1,348 @@
+// Thinning, crease samples, the advancing front, and its repair: manifold part, orientation, components
+// that are too small, holes the cloud does not have.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaffold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "advancing_front.h"
+#include "neighborhoods.h"
+#include "quantile.h"
+#include "shuffled_order.h"
+#include "surface_anchors.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr Index  spacingProbes     = 2000;
+constexpr Index  spacingNeighbors  = 6;
+constexpr double poissonSpacing    = 0.977; // mean distance to six neighbours of random points, density 1
+constexpr double trianglesPerFace  = 3.0;   // thinning distances in an edge of the quad mesh
+// Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
+// cuts off the corners where creases meet.
+constexpr double creaseStep        = 0.93;
+constexpr double noiseClearance    = 2.0;   // noise units: the denoised points beside a crease are round
+constexpr double coarser           = 1.5;   // thinning of the next attempt, over this one
+constexpr int    attempts          = 3;
+constexpr double toleratedDefects  = 0.002; // per vertex
+
+double spacingOf(const PointSample& sample)
+{
+	const Index         count = std::min(sample.cloud.size(), spacingProbes);
+	std::vector<double> spacing(count);
+	parallelFor(count, {}, [&](Index i) {
+		const Vector3d p   = sample.cloud.positions.col(i);
+		double         sum = 0.0;
+		const auto     near = sample.search.nearest(p, spacingNeighbors + 1);
+		for (const Index j : near)
+			sum += (sample.cloud.positions.col(j) - p).norm();
+		spacing[i] = sum / std::max<std::size_t>(near.size() - 1, 1);
+	});
+	return medianInPlace(spacing);
+}
+
+// Creases as vertices and the edges between them.
+struct CreaseSamples {
+	std::vector<Vector3d>                points;
+	std::vector<std::pair<Index, Index>> edges;
+};
+
+CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step)
+{
+	CreaseSamples                         samples;
+	std::map<std::array<double, 3>, Index> ends; // lines that meet share the vertex
+	const auto endVertex = [&](const Vector3d& p) {
+		const auto found = ends.try_emplace(
+			{p.x(), p.y(), p.z()}, static_cast<Index>(samples.points.size()));
+		if (found.second)
+			samples.points.push_back(p);
+		return found.first->second;
+	};
+	for (const FeatureLine& crease : creases) {
+		std::vector<Vector3d> corners;
+		for (Eigen::Index k = 0; k < crease.points.cols(); ++k)
+			if (corners.empty() || corners.back() != Vector3d(crease.points.col(k)))
+				corners.push_back(crease.points.col(k));
+		if (crease.closed && corners.size() > 2 && corners.front() != corners.back())
+			corners.push_back(corners.front());
+		if (corners.size() < 2)
+			continue;
+		std::vector<double> arc = {0.0};
+		for (std::size_t k = 1; k < corners.size(); ++k)
+			arc.push_back(arc.back() + (corners[k] - corners[k - 1]).norm());
+		const Index least  = crease.closed ? 3 : 1;
+		const Index pieces = std::max(least, static_cast<Index>(std::ceil(arc.back() / step)));
+		Index       last   = endVertex(corners.front());
+		for (Index k = 1; k <= pieces; ++k) {
+			Index next = -1;
+			if (k == pieces) {
+				next = endVertex(corners.back());
+			}
+			else {
+				const double s = arc.back() * k / pieces;
+				const auto   i =
+					std::clamp<std::ptrdiff_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin(), 1, arc.size() - 1);
+				const double t = (s - arc[i - 1]) / (arc[i] - arc[i - 1]);
+				next           = static_cast<Index>(samples.points.size());
+				samples.points.push_back(corners[i - 1] + t * (corners[i] - corners[i - 1]));
+			}
+			if (next != last)
+				samples.edges.emplace_back(last, next);
+			last = next;
+		}
+	}
+	return samples;
+}
+
+Eigen::Matrix3Xd asMatrix(const std::vector<Vector3d>& points)
+{
+	Eigen::Matrix3Xd result(3, points.size());
+	for (std::size_t k = 0; k < points.size(); ++k)
+		result.col(k) = points[k];
+	return result;
+}
+
+// What the triangulation is made from: points of the cloud (`source`), then samples of creases (-1).
+struct Sites {
+	Eigen::Matrix3Xd   points, normals; // normals of crease samples are zero
+	std::vector<Index> source;
+	std::vector<std::pair<Index, Index>> creaseEdges;
+};
+
+Sites chooseSites(
+	const PointSample&              sample,
+	const std::vector<Index>&       order,
+	const std::vector<FeatureLine>& creases,
+	double                          distance,
+	const ScaffoldOptions&          options)
+{
+	const double clearance =
+		std::max(options.creaseClearance * distance, noiseClearance * options.noise);
+	const CreaseSamples    samples   = sampleCreases(creases, creaseStep * clearance);
+	const Eigen::Matrix3Xd onCreases = asMatrix(samples.points);
+
+	std::vector<Index> chosen = thin(sample, distance);
+	if (onCreases.cols() > 0) {
+		const NeighborSearch search(onCreases);
+		chosen.erase(
+			std::remove_if(
+				chosen.begin(),
+				chosen.end(),
+				[&](Index i) { return search.anyWithin(sample.cloud.positions.col(i), clearance); }),
+			chosen.end());
+	}
+	Sites       sites;
+	const Index fromCloud = static_cast<Index>(chosen.size());
+	const Index count     = fromCloud + static_cast<Index>(onCreases.cols());
+	sites.points.resize(3, count);
+	sites.normals.setZero(3, count);
+	sites.source.assign(count, -1);
+	for (Index k = 0; k < fromCloud; ++k) {
+		sites.points.col(k)  = sample.cloud.positions.col(chosen[k]);
+		sites.normals.col(k) = sample.cloud.normals.col(chosen[k]);
+		sites.source[k]      = order[chosen[k]];
+	}
+	sites.points.rightCols(onCreases.cols()) = onCreases;
+	for (const auto& [a, b] : samples.edges)
+		sites.creaseEdges.emplace_back(fromCloud + a, fromCloud + b);
+	return sites;
+}
+
+// Turns every component to the side most of its normals are on.
+void orient(const TriangleMesh& mesh, const Sites& sites, const std::vector<Index>& component, std::vector<Triangle>& triangles)
+{
+	std::vector<double> votes(mesh.vertexCount(), 0.0);
+	for (Index t = 0; t < mesh.triangleCount(); ++t) {
+		const Vector3d area = mesh.areaVector(t);
+		for (const Index v : triangles[t])
+			votes[component[v]] += area.dot(sites.normals.col(v));
+	}
+	for (Triangle& t : triangles) {
+		if (votes[component[t[0]]] < 0.0)
+			std::swap(t[1], t[2]);
+		std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+	}
+}
+
+// Fills a rim with triangles about its centre.
+void fillRim(const std::vector<Index>& rim, Sites& sites, std::vector<Triangle>& triangles)
+{
+	const auto n = static_cast<Index>(rim.size());
+	if (n == 3) {
+		triangles.push_back({rim[2], rim[1], rim[0]});
+		return;
+	}
+	Vector3d center = Vector3d::Zero();
+	for (const Index v : rim)
+		center += sites.points.col(v) / n;
+	const Index hub = static_cast<Index>(sites.points.cols());
+	sites.points.conservativeResize(3, hub + 1);
+	sites.normals.conservativeResize(3, hub + 1);
+	sites.points.col(hub) = center;
+	sites.normals.col(hub).setZero();
+	sites.source.push_back(-1);
+	for (Index k = 0; k < n; ++k)
+		triangles.push_back({hub, rim[(k + 1) % n], rim[k]});
+}
+
+double lengthOf(const std::vector<Index>& rim, const Eigen::Matrix3Xd& points)
+{
+	double length = 0.0;
+	for (std::size_t k = 0; k < rim.size(); ++k)
+		length += (points.col(rim[k]) - points.col(rim[(k + 1) % rim.size()])).norm();
+	return length;
+}
+
+// Only vertices that a triangle uses.
+TriangleMesh compact(const Sites& sites, std::vector<Triangle> triangles, std::vector<Index>& nameOf)
+{
+	nameOf.assign(sites.points.cols(), -1);
+	for (const Triangle& t : triangles)
+		for (const Index v : t)
+			nameOf[v] = 0;
+	Index used = 0;
+	for (Index& name : nameOf)
+		name = name < 0 ? -1 : used++;
+	Eigen::Matrix3Xd points(3, used);
+	for (std::size_t v = 0; v < nameOf.size(); ++v)
+		if (nameOf[v] >= 0)
+			points.col(nameOf[v]) = sites.points.col(v);
+	for (Triangle& t : triangles)
+		for (Index& v : t)
+			v = nameOf[v];
+	return {std::move(points), std::move(triangles)};
+}
+
+Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOptions& options)
+{
+	Scaffold scaffold;
+	scaffold.spacing = distance;
+	scaffold.cell    = cell;
+
+	const std::vector<Triangle> front = advancingFront(sites.points, options.longestEdge * distance);
+	std::vector<Index>    copies;
+	std::vector<Triangle> triangles =
+		manifoldPart(front, static_cast<Index>(sites.points.cols()), copies);
+	scaffold.defects = static_cast<Index>(front.size() - triangles.size() + copies.size());
+	const Index originals = static_cast<Index>(sites.points.cols());
+	const Index total     = originals + static_cast<Index>(copies.size());
+	sites.points.conservativeResize(3, total);
+	sites.normals.conservativeResize(3, total);
+	sites.source.resize(total);
+	for (std::size_t k = 0; k < copies.size(); ++k) {
+		const Index to       = originals + static_cast<Index>(k);
+		sites.points.col(to)  = sites.points.col(copies[k]);
+		sites.normals.col(to) = sites.normals.col(copies[k]);
+		sites.source[to]      = sites.source[copies[k]];
+	}
+
+	const TriangleMesh       raw(sites.points, triangles);
+	const std::vector<Index> component = raw.components();
+	orient(raw, sites, component, triangles);
+	std::vector<double> area(raw.vertexCount(), 0.0);
+	for (Index t = 0; t < raw.triangleCount(); ++t)
+		area[component[triangles[t][0]]] += raw.areaVector(t).norm();
+	// Closing the rim of a speck would make a pillow of it: the area keeps rims longer than small holes.
+	const double least =
+		std::max(options.leastArea * cell * cell, options.smallHole * distance * distance);
+	const double largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
+	std::vector<char> dropped(area.size(), 0);
+	for (std::size_t v = 0; v < area.size(); ++v) {
+		if (!(area[v] > 0.0))
+			continue;
+		dropped[v] = area[v] < std::min(least, largest);
+		++(dropped[v] ? scaffold.droppedComponents : scaffold.components);
+	}
+	triangles.erase(
+		std::remove_if(
+			triangles.begin(),
+			triangles.end(),
+			[&](const Triangle& t) { return dropped[component[t[0]]] != 0; }),
+		triangles.end());
+
+	const TriangleMesh open(sites.points, triangles);
+	for (const std::vector<Index>& rim : open.rims()) {
+		const double length = lengthOf(rim, sites.points);
+		const bool   hole   = length <= options.smallHole * distance;
+		if (!hole && length > options.closedRim * cell)
+			continue;
+		scaffold.filledHoles += hole;
+		fillRim(rim, sites, triangles);
+	}
+	scaffold.defects += scaffold.filledHoles;
+
+	std::vector<Index> nameOf;
+	scaffold.mesh = compact(sites, std::move(triangles), nameOf);
+	scaffold.source.resize(scaffold.mesh.vertexCount());
+	for (std::size_t v = 0; v < nameOf.size(); ++v)
+		if (nameOf[v] >= 0)
+			scaffold.source[nameOf[v]] = sites.source[v];
+	scaffold.creaseEdge.assign(scaffold.mesh.edgeCount(), 0);
+	for (const auto& [a, b] : sites.creaseEdges) {
+		const bool  used = nameOf[a] >= 0 && nameOf[b] >= 0;
+		const Index edge = used ? scaffold.mesh.edgeBetween(nameOf[a], nameOf[b]) : -1;
+		if (edge < 0) {
+			++scaffold.lostCreaseEdges;
+		}
+		else
+			scaffold.creaseEdge[edge] = 1;
+	}
+	return scaffold;
+}
+
+} // namespace
+
+bool Scaffold::hasCreases() const
+{
+	return std::count(creaseEdge.begin(), creaseEdge.end(), char(1)) > 0;
+}
+
+Scaffold buildScaffold(
+	const PointCloud&               cloud,
+	const std::vector<FeatureLine>& creases,
+	const ScaffoldOptions&          options,
+	const Progress&                 progress)
+{
+	if (cloud.size() < 4)
+		return {};
+	const std::vector<Index> order = shuffledOrder(cloud.positions);
+	PointCloud               shuffled;
+	shuffled.positions.resize(3, cloud.size());
+	shuffled.normals.resize(3, cloud.size());
+	for (Index k = 0; k < cloud.size(); ++k) {
+		shuffled.positions.col(k) = cloud.positions.col(order[k]);
+		shuffled.normals.col(k)   = cloud.normals.col(order[k]);
+	}
+	const PointSample sample(std::move(shuffled));
+	const double      spacing = spacingOf(sample);
+	const double      cell =
+		options.targetVertices > 0.0 ?
+			spacing / poissonSpacing * std::sqrt(cloud.size() / options.targetVertices) :
+			0.0;
+
+	Scaffold best;
+	double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
+	for (int k = 0; k < attempts; ++k, distance *= coarser) {
+		progress.report(double(k) / attempts);
+		Scaffold next = attempt(
+			chooseSites(sample, order, creases, distance, options), distance, cell, options);
+		const bool better = k == 0 || (next.mesh.triangleCount() > 0 &&
+									   next.defects + next.lostCreaseEdges <
+										   (best.defects + best.lostCreaseEdges) / 2);
+		if (better)
+			best = std::move(next);
+		if (best.defects + best.lostCreaseEdges <= toleratedDefects * best.mesh.vertexCount())
+			break;
+	}
+	return best;
+}
+
+} // namespace curvature_lines

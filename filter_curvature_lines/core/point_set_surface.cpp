@@ -3,6 +3,7 @@
 #include "point_set_surface.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace curvature_lines {
 
@@ -15,7 +16,9 @@ constexpr double isolated = 3.0; // spacings
 bool ControlNeighborhood::gather(
 	const ControlPoints& control, const Eigen::Vector3d& position, Index count)
 {
-	points = control.search.nearest(position, count);
+	points.clear();
+	if (position.allFinite())
+		points = control.search.nearest(position, count);
 	if (points.empty())
 		return false;
 	const auto squaredDistance = [&](Index j) {
@@ -76,6 +79,33 @@ ProjectedPoints projectPoints(
 	if (n > 0)
 		result.iterations = *std::max_element(iterations.begin(), iterations.end());
 	return result;
+}
+
+Eigen::Matrix3Xd
+scatterAround(const ControlPoints& control, const Eigen::Matrix3Xd& positions, Index count)
+{
+	constexpr Index    spacingNeighbors = 16;
+	constexpr double   goldenAngle      = 2.399963229728653;
+	const auto         n                = static_cast<Index>(positions.cols());
+	Eigen::Matrix3Xd   scattered(3, std::int64_t(n) * count);
+	parallelFor(n, {}, [&](Index i) {
+		thread_local ControlNeighborhood around;
+		const Eigen::Vector3d            center = positions.col(i);
+		const bool known = around.gather(control, center, spacingNeighbors);
+		for (Index k = 0; k < count; ++k) {
+			Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+			if (known && k > 0) {
+				// A disk as large as the square of one spacing, along a sunflower spiral turned from vertex to
+				// vertex.
+				const TangentFrame frame(control.cloud.normals.col(around.points.front()));
+				const double       radius = around.spacing * std::sqrt((k + 0.5) / (count * double(EIGEN_PI)));
+				const double       angle  = goldenAngle * (k + double(count) * i);
+				offset = radius * (std::cos(angle) * frame.u + std::sin(angle) * frame.v);
+			}
+			scattered.col(std::int64_t(i) * count + k) = center + offset;
+		}
+	});
+	return scattered;
 }
 
 } // namespace curvature_lines

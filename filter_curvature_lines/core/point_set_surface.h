@@ -77,4 +77,9 @@ ProjectedPoints projectPoints(
 	const ProjectionOptions& options  = {},
 	const Progress&          progress = {});
 
+// `count` places around each of `positions` (3 x M), itself first: evenly spread over the area of one control
+// point, in the tangent plane there. Fixed; not yet on the surface.
+Eigen::Matrix3Xd
+scatterAround(const ControlPoints& control, const Eigen::Matrix3Xd& positions, Index count);
+
 } // namespace curvature_lines

@@ -85,9 +85,10 @@ double stepToQuadric(
 
 } // namespace
 
-Camera Camera::facing(const PointCloud& cloud, double aspectRatio)
+Camera Camera::facing(const PointCloud& cloud, double aspectRatio, double fieldOfView)
 {
 	Camera camera;
+	camera.fieldOfView = fieldOfView;
 	if (cloud.size() == 0)
 		return camera;
 	const Vector3d low = cloud.positions.rowwise().minCoeff(), high = cloud.positions.rowwise().maxCoeff();

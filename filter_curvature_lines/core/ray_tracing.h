@@ -16,7 +16,7 @@ struct Camera {
 
 	// Looks at the middle of the points from the side of their normals' mean, from a little above, and sees
 	// all of them.
-	static Camera facing(const PointCloud& cloud, double aspectRatio);
+	static Camera facing(const PointCloud& cloud, double aspectRatio, double fieldOfView = 30.0);
 };
 
 struct RayTracingOptions {

@@ -101,10 +101,7 @@ FilterSpec mWeightedCurvatureFilter()
 			"<tt>curv_feature</tt> (always 0) and <tt>curv_status</tt>, as <i>Robust Curvature</i> "
 			"does. PD1 and PD2 are tangent to the layer's normals. Filters that go on from curvature "
 			"use the robust one." +
-			helpConventions +
-			"<br><br>See:<br><i>E. Tejada, J. P. Gois, L. G. Nonato, A. Castelo, T. Ertl.</i><br>"
-			"<b>\"Curvature-driven modeling and rendering of point-based surfaces\"</b><br>"
-			"SIBGRAPI 2006.",
+			helpConventions + helpReferenceTejada,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::VertexColoring,
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,

@@ -1,7 +1,5 @@
 // Build Curvature-Aligned Quad Mesh: core/quad_mesh on the layer of lines.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
-
 #include "filter_table.h"
 #include "help_text.h"
 #include "polygon_layer.h"
@@ -41,18 +39,6 @@ RichParameterList parameters(const MeshDocument& document)
 	return list;
 }
 
-// The matrices may only differ by rounding, or the lines lie beside their cloud.
-void requireSameMatrix(const MeshModel& a, const MeshModel& b)
-{
-	for (int r = 0; r < 4; ++r)
-		for (int c = 0; c < 4; ++c)
-			if (!(std::abs(a.cm.Tr[r][c] - b.cm.Tr[r][c]) <=
-				  1e-5 * (1.0 + std::abs(double(b.cm.Tr[r][c])))))
-				throw MLException(
-					"the lines and the point cloud have different matrices; freeze or reset the "
-					"matrices of both layers the same way.");
-}
-
 void requireLinesOnCloud(const LineNetwork& lines)
 {
 	// The cloud fills a box of diagonal 1 about the origin.
@@ -83,7 +69,7 @@ FilterResults apply(const FilterContext& context)
 		throw MLException(
 			"parameter 'point_cloud' names the lines themselves; choose the layer they were traced "
 			"on.");
-	requireSameMatrix(lineLayer, *cloudLayer);
+	requireSameMatrix(lineLayer, *cloudLayer, "the lines and the point cloud");
 
 	const LayerPoints   points = readOrientedPoints(*cloudLayer);
 	Stopwatch           total, stage;

@@ -15,6 +15,8 @@ const std::vector<FilterSpec>& filterTable()
 		quadMeshFilter(),
 		reconstructionFilter(),
 		mWeightedCurvatureFilter(),
+		projectionFilter(),
+		rayTraceFilter(),
 	};
 	return table;
 }

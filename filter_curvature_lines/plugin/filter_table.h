@@ -43,5 +43,7 @@ FilterSpec traceLinesFilter();
 FilterSpec quadMeshFilter();
 FilterSpec reconstructionFilter();
 FilterSpec mWeightedCurvatureFilter();
+FilterSpec projectionFilter();
+FilterSpec rayTraceFilter();
 
 } // namespace curvature_lines

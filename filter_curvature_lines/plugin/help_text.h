@@ -31,4 +31,9 @@ inline const QString helpReference =
 	"<b>\"Extracting lines of curvature from noisy point clouds\"</b><br>"
 	"Computer-Aided Design 41(4), 2009.";
 
+inline const QString helpReferenceTejada =
+	"<br><br>See:<br><i>E. Tejada, J. P. Gois, L. G. Nonato, A. Castelo, T. Ertl.</i><br>"
+	"<b>\"Curvature-driven modeling and rendering of point-based surfaces\"</b><br>"
+	"SIBGRAPI 2006.";
+
 } // namespace curvature_lines

@@ -67,6 +67,17 @@ MeshModel& currentLayer(MeshDocument& document)
 	return *document.mm();
 }
 
+void requireSameMatrix(const MeshModel& a, const MeshModel& b, const QString& names)
+{
+	for (int r = 0; r < 4; ++r)
+		for (int c = 0; c < 4; ++c)
+			if (!(std::abs(a.cm.Tr[r][c] - b.cm.Tr[r][c]) <=
+				  1e-5 * (1.0 + std::abs(double(b.cm.Tr[r][c])))))
+				throw MLException(
+					names + " have different matrices; freeze or reset the matrices of both layers the "
+					"same way.");
+}
+
 LayerPoints readPoints(const MeshModel& layer)
 {
 	const CMeshO& mesh = layer.cm;

@@ -14,6 +14,10 @@ struct CurvatureEstimate;
 // The current layer; throws when the document has none.
 MeshModel& currentLayer(MeshDocument& document);
 
+// Throws unless the matrices of both layers are the same but for rounding: what is local to one would lie
+// beside the other.
+void requireSameMatrix(const MeshModel& a, const MeshModel& b, const QString& names);
+
 struct LayerPoints {
 	Eigen::Matrix3Xd         positions, normals; // 3 x N, as they are: any length, maybe not finite
 	std::vector<std::size_t> vertex;             // N: index in cm.vert

@@ -80,6 +80,27 @@ int Parameters::layerId(const QString& name) const
 	return static_cast<int>(m_list.getMeshId(name));
 }
 
+QString Parameters::text(const QString& name) const
+{
+	const RichParameter& parameter = m_list.getParameterByName(name);
+	return parameter.value().getString();
+}
+
+Eigen::Vector3d Parameters::color(const QString& name) const
+{
+	const QColor color = m_list.getColor(name);
+	return {color.redF(), color.greenF(), color.blueF()};
+}
+
+Eigen::Vector3d Parameters::point(const QString& name) const
+{
+	const Point3m         p = m_list.getPoint3m(name);
+	const Eigen::Vector3d point(p[0], p[1], p[2]);
+	if (!point.allFinite())
+		throw outOfRange(name, "not finite", "three numbers");
+	return point;
+}
+
 void addScaleMode(RichParameterList& list, bool advanced)
 {
 	list.addParam(RichEnum(

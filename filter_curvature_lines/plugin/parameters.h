@@ -24,6 +24,9 @@ public:
 	// Position in the list of labels.
 	int choice(const QString& name) const;
 	int layerId(const QString& name) const;
+	QString         text(const QString& name) const;
+	Eigen::Vector3d color(const QString& name) const; // red, green, blue, 0..1
+	Eigen::Vector3d point(const QString& name) const; // finite
 
 private:
 	RichParameterList m_list;

@@ -20,6 +20,8 @@ TRACE = "generate_curvature_lines"
 MESH = "generate_curvature_aligned_quad_mesh"
 PIPELINE = "generate_surface_reconstruction_curvature_aligned"
 M_WEIGHTED = "compute_curvature_m_weighted_per_vertex"
+PROJECT = "compute_curvature_driven_projection"
+RAY_TRACE = "save_ray_traced_point_set_image"
 ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE, M_WEIGHTED]
 
 OK, BOUNDARY, TOO_FEW, UMBILIC, ISOLATED, INVALID = range(6)

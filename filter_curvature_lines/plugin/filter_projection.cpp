@@ -1,0 +1,201 @@
+// Curvature-Driven Projection: core/curvature_driven_projection on two layers.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "filter_table.h"
+#include "help_text.h"
+
+#include "core/curvature_driven_projection.h"
+
+namespace curvature_lines {
+
+namespace {
+
+RichParameterList parameters(const MeshDocument& document)
+{
+	const CurvatureDrivenOptions defaults;
+	const int                    current = document.mm() ? document.mm()->id() : -1;
+	RichParameterList            list;
+	list.addParam(RichMesh(
+		"control_mesh",
+		current,
+		&document,
+		"Control points",
+		"The cloud that defines the surface; it needs oriented normals and stays as it is, unless it is "
+		"projected onto its own surface."));
+	list.addParam(RichMesh(
+		"proxy_mesh",
+		current,
+		&document,
+		"Projected points",
+		"The layer whose vertices move onto the surface."));
+	list.addParam(RichFloat(
+		"bandwidth",
+		Scalarm(defaults.bandwidth),
+		"Bandwidth",
+		"Of the Gaussian weights, in local spacings of the control points (0.5 to 20). Larger removes "
+		"more noise and blurs more detail."));
+	list.addParam(RichInt(
+		"diffusion_steps",
+		defaults.diffusionSteps,
+		"Diffusion steps",
+		"Largest number of steps that move a point onto the surface along the normal (1 to 1000); it "
+		"stops when nothing moves.",
+		true));
+	list.addParam(RichEnum(
+		"diffusion_function",
+		static_cast<int>(defaults.diffusion),
+		QStringList() << "Hermite"
+					  << "Cutoff"
+					  << "Rational",
+		"Diffusion",
+		"What a control point says about where the surface is.<ul>"
+		"<li><b>Hermite</b>: the mean of its own height and that of its tangent plane, which does not "
+		"shrink the surface</li>"
+		"<li><b>Cutoff</b>, <b>Rational</b>: its height, none or less of it where the surface bends much "
+		"towards it, as published: shrinks bends by a share of the spacing</li></ul>"));
+	list.addParam(RichInt(
+		"resample",
+		1,
+		"Points per point",
+		"1: the vertices move. More (up to 100): so many points around each vertex, projected, as a new "
+		"layer: a denser cloud on the same surface."));
+	return list;
+}
+
+const MeshModel& layerOf(const FilterContext& context, const QString& name)
+{
+	const int        id    = context.parameters.layerId(name);
+	const MeshModel* layer = context.document.getMesh(id);
+	if (layer == nullptr)
+		throw MLException(
+			"parameter '" + name + "' is " + QString::number(id) + ", and there is no such layer.");
+	return *layer;
+}
+
+template<class Vertex>
+void place(Vertex& vertex, const PreparedCloud& frame, const ProjectedPoints& projected, Index i)
+{
+	const Eigen::Vector3d position = frame.toModel(projected.positions.col(i));
+	for (int c = 0; c < 3; ++c) {
+		vertex.P()[c] = Scalarm(position[c]);
+		vertex.N()[c] = Scalarm(projected.normals(c, i));
+	}
+}
+
+void writeProjected(
+	MeshModel& layer, const LayerPoints& points, const PreparedCloud& frame, const ProjectedPoints& projected)
+{
+	for (Index i = 0; i < points.size(); ++i)
+		if (projected.projected[i])
+			place(layer.cm.vert[points.vertex[i]], frame, projected, i);
+	vcg::tri::UpdateBounding<CMeshO>::Box(layer.cm);
+	if (layer.cm.fn > 0)
+		vcg::tri::UpdateNormal<CMeshO>::PerFaceNormalized(layer.cm);
+}
+
+void appendProjected(MeshModel& layer, const PreparedCloud& frame, const ProjectedPoints& projected)
+{
+	const auto count = std::count(projected.projected.begin(), projected.projected.end(), 1);
+	auto       vertex = vcg::tri::Allocator<CMeshO>::AddVertices(layer.cm, count);
+	for (Index i = 0; i < static_cast<Index>(projected.projected.size()); ++i)
+		if (projected.projected[i])
+			place(*vertex++, frame, projected, i);
+	vcg::tri::UpdateBounding<CMeshO>::Box(layer.cm);
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	const Parameters&      parameters = context.parameters;
+	CurvatureDrivenOptions options;
+	options.bandwidth      = parameters.real("bandwidth", 0.5, 20.0);
+	options.diffusionSteps = parameters.integer("diffusion_steps", 1, 1000);
+	options.diffusion = static_cast<CurvatureDrivenOptions::Diffusion>(parameters.choice("diffusion_function"));
+	options.neighbors = std::max<Index>(options.neighbors, Index(7.0 * options.bandwidth * options.bandwidth));
+	const Index      perPoint = parameters.integer("resample", 1, 100);
+	const MeshModel& control  = layerOf(context, "control_mesh");
+	const MeshModel& proxy    = layerOf(context, "proxy_mesh");
+	requireSameMatrix(control, proxy, "'control_mesh' and 'proxy_mesh'");
+
+	const LayerPoints          points = readOrientedPoints(control);
+	const LayerPoints          moving = readPoints(proxy);
+	FilterResults              results;
+	Stopwatch                  total;
+	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
+	const NeighborSearch       search(prepared.cloud.positions);
+	const MinimumNeighborhoods minimum = minimumNeighborhoods(
+		prepared.cloud, search, {}, context.progress.sub(0.0, 0.3, "Finding neighborhoods"));
+	const ControlPoints          controlPoints{prepared.cloud, search, minimum.spacing};
+	const CurvatureDrivenSurface surface(controlPoints, options);
+
+	Eigen::Matrix3Xd unit = moving.positions;
+	for (Index i = 0; i < moving.size(); ++i)
+		unit.col(i) = prepared.toUnit(moving.positions.col(i));
+	if (perPoint > 1)
+		unit = scatterAround(controlPoints, unit, perPoint);
+	const ProjectedPoints projected =
+		projectPoints(surface, unit, {}, context.progress.sub(0.3, 1.0, "Projecting"));
+
+	double      squares = 0.0, largest = 0.0;
+	std::size_t moved = 0;
+	for (Index i = 0; i < static_cast<Index>(unit.cols()); ++i) {
+		if (!projected.projected[i])
+			continue;
+		const double step = prepared.diagonal * (projected.positions.col(i) - unit.col(i)).norm();
+		squares += step * step;
+		largest = std::max(largest, step);
+		++moved;
+	}
+	if (moved == 0)
+		throw MLException(
+			"no point of 'proxy_mesh' is near the surface of 'control_mesh' (within three of its point "
+			"spacings); check that both layers show the same thing at the same place.");
+
+	if (perPoint == 1) {
+		MeshModel& target = *context.document.getMesh(proxy.id());
+		target.updateDataMask(MeshModel::MM_VERTNORMAL);
+		writeProjected(target, moving, prepared, projected);
+	}
+	else {
+		NewLayers  layers(context.document);
+		MeshModel& layer = layers.add("resampled surface", proxy);
+		appendProjected(layer, prepared, projected);
+		layers.keep(layer);
+	}
+	results.count("points", unit.cols());
+	results.count("projected", moved);
+	results.count("not_projected", unit.cols() - moved);
+	results.count("iterations", projected.iterations);
+	results.real("moved_rms", std::sqrt(squares / moved));
+	results.real("moved_max", largest);
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec projectionFilter()
+{
+	return {
+		"Curvature-Driven Projection",
+		"compute_curvature_driven_projection",
+		"Moves the vertices of a layer onto the smooth surface that a point cloud defines: near every "
+		"vertex, the quadric of the surface's principal curvatures and directions. Also makes a cloud "
+		"denser on its own surface."
+		"<br><br><b>Input.</b> A control cloud with oriented normals, and the layer to project (it may be "
+		"the same). Vertices farther than three spacings from the control points, and those whose "
+		"neighbours do not tell a surface, stay and are counted. Points already on the surface stay."
+		"<br><br><b>Writes</b> coordinates and normals of the projected vertices; with more than one "
+		"point per point, a new layer <i>resampled surface</i> instead. For noisy scans, denoise first "
+		"(<i>Denoise Point Cloud by Robust Curvature</i>): the bandwidth here is fixed, in spacings." +
+			helpReferenceTejada,
+		FilterPlugin::PointSet + FilterPlugin::Sampling,
+		FilterPlugin::VARIABLE,
+		MeshModel::MM_NONE,
+		MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

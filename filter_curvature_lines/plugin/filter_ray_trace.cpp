@@ -1,0 +1,251 @@
+// Ray-Trace Point-Set Surface: core/surface_picture of a layer, into a PNG file.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <QDir>
+#include <QFileInfo>
+#include <QImage>
+#include <QSaveFile>
+
+#include "filter_table.h"
+#include "help_text.h"
+
+#include "core/curvature_colors.h"
+#include "core/curvature_driven_projection.h"
+#include "core/moving_least_squares.h"
+#include "core/surface_picture.h"
+
+namespace curvature_lines {
+
+namespace {
+
+enum class SurfaceKind { CurvatureDriven, MovingLeastSquares };
+enum class ColorBy { Plain, Curvature, VertexColor };
+enum class CameraKind { Automatic, Given };
+
+const Eigen::Vector3d plainColor(0.80, 0.79, 0.76);
+
+RichParameterList parameters(const MeshDocument& document)
+{
+	const PictureOptions defaults;
+	const int            current = document.mm() ? document.mm()->id() : -1;
+	RichParameterList    list;
+	list.addParam(RichFileSave(
+		"image_file", "", "*.png", "Image file", "Where the picture goes: a PNG file, replaced if it exists."));
+	list.addParam(RichInt("width", defaults.image.width, "Width", "In pixels (1 to 8192)."));
+	list.addParam(RichInt("height", defaults.image.height, "Height", "In pixels (1 to 8192)."));
+	list.addParam(RichEnum(
+		"surface",
+		0,
+		QStringList() << "Curvature-Driven"
+					  << "Moving Least Squares",
+		"Surface",
+		"The surface between the points.<ul>"
+		"<li><b>Curvature-Driven</b>: quadrics of principal curvatures and directions</li>"
+		"<li><b>Moving Least Squares</b>: complete quadrics over fitted planes; slower, needs normals for "
+		"the side only</li></ul>"));
+	list.addParam(RichColor("background", QColor(255, 255, 255), "Background", "Colour where nothing is."));
+	list.addParam(RichEnum(
+		"color_by",
+		0,
+		QStringList() << "Plain"
+					  << "Curvature"
+					  << "Vertex Colour",
+		"Colour",
+		"<ul><li><b>Plain</b>: one light grey</li>"
+		"<li><b>Curvature</b>: convex red, saddle green, concave blue, flat white</li>"
+		"<li><b>Vertex Colour</b>: that of the layer, as other filters leave it</li></ul>"));
+	list.addParam(RichMesh(
+		"lines",
+		current,
+		&document,
+		"Lines",
+		"A layer of lines (of curvature, or any edges) to draw on the surface in its vertices' colours; the "
+		"cloud's own layer: none."));
+	list.addParam(RichEnum(
+		"camera",
+		0,
+		QStringList() << "Automatic"
+					  << "Given",
+		"Camera",
+		"<b>Automatic</b>: sees all points, from the side their normals face. <b>Given</b>: by the "
+		"parameters below.",
+		true));
+	list.addParam(RichPosition("camera_position", Point3m(0, 0, 2), "Camera position", "In the layer's coordinates.", true));
+	list.addParam(RichPosition("camera_target", Point3m(0, 0, 0), "Camera target", "What is in the middle of the picture.", true));
+	list.addParam(RichDirection("camera_up", Point3m(0, 1, 0), "Camera up", "What is up in the picture.", true));
+	list.addParam(RichFloat(
+		"field_of_view",
+		Scalarm(Camera().fieldOfView),
+		"Field of view",
+		"Across the shorter side of the picture, in degrees (1 to 150).",
+		true));
+	return list;
+}
+
+QString imageFile(const Parameters& parameters)
+{
+	const QString path = parameters.text("image_file");
+	if (path.isEmpty())
+		throw MLException("parameter 'image_file' is empty; name the PNG file the picture goes to.");
+	if (QFileInfo(path).suffix().toLower() != "png")
+		throw MLException("parameter 'image_file' is '" + path + "'; pictures are PNG files, the name must end in .png.");
+	if (!QFileInfo(path).absoluteDir().exists())
+		throw MLException("the folder of '" + path + "' does not exist; make it first.");
+	return path;
+}
+
+Camera cameraOf(const Parameters& parameters, const PreparedCloud& prepared, double aspectRatio)
+{
+	const double fieldOfView = parameters.real("field_of_view", 1.0, 150.0);
+	if (static_cast<CameraKind>(parameters.choice("camera")) == CameraKind::Automatic)
+		return Camera::facing(prepared.cloud, aspectRatio, fieldOfView);
+	Camera camera;
+	camera.fieldOfView = fieldOfView;
+	camera.position    = prepared.toUnit(parameters.point("camera_position"));
+	camera.target      = prepared.toUnit(parameters.point("camera_target"));
+	camera.up          = parameters.point("camera_up");
+	if (!((camera.target - camera.position).cross(camera.up).norm() > 1e-12))
+		throw MLException(
+			"'camera_up' runs along the view from 'camera_position' to 'camera_target'; give another "
+			"direction.");
+	return camera;
+}
+
+Eigen::Vector3d colorOf(const CVertexO& vertex)
+{
+	return Eigen::Vector3d(vertex.cC()[0], vertex.cC()[1], vertex.cC()[2]) / 255.0;
+}
+
+Eigen::Matrix3Xd colorsOf(
+	ColorBy              colorBy,
+	const MeshModel&     layer,
+	const LayerPoints&   points,
+	const PreparedCloud& prepared,
+	const ControlPoints& control,
+	const MinimumNeighborhoods& minimum)
+{
+	const Index      n = prepared.cloud.size();
+	Eigen::Matrix3Xd colors(3, n);
+	switch (colorBy) {
+	case ColorBy::Plain:
+		colors.colwise() = plainColor;
+		break;
+	case ColorBy::Curvature: {
+		const CurvatureField field = mWeightedCurvature(prepared.cloud, control.search, minimum);
+		colors                     = curvatureColors(field.k1, field.k2, 0.5);
+		break;
+	}
+	case ColorBy::VertexColor:
+		for (Index i = 0; i < n; ++i)
+			colors.col(i) = colorOf(layer.cm.vert[points.vertex[prepared.source[i]]]);
+		break;
+	}
+	return colors;
+}
+
+PictureLines linesOf(const MeshModel& layer, const PreparedCloud& prepared)
+{
+	PictureLines lines;
+	lines.vertices.resize(3, layer.cm.vert.size());
+	for (std::size_t v = 0; v < layer.cm.vert.size(); ++v) {
+		const Point3m& p      = layer.cm.vert[v].cP();
+		lines.vertices.col(v) = prepared.toUnit({double(p[0]), double(p[1]), double(p[2])});
+	}
+	std::vector<Eigen::Vector3d> colors;
+	for (const CEdgeO& edge : layer.cm.edge) {
+		if (edge.IsD())
+			continue;
+		const auto from = vcg::tri::Index(layer.cm, edge.cV(0)), to = vcg::tri::Index(layer.cm, edge.cV(1));
+		lines.segments.emplace_back(static_cast<Index>(from), static_cast<Index>(to));
+		colors.push_back(colorOf(*edge.cV(0)));
+	}
+	lines.colors.resize(3, colors.size());
+	for (std::size_t s = 0; s < colors.size(); ++s)
+		lines.colors.col(s) = colors[s];
+	return lines;
+}
+
+void savePicture(const Picture& picture, const QString& path)
+{
+	QImage image(picture.width, picture.height, QImage::Format_RGB888);
+	for (int y = 0; y < picture.height; ++y)
+		std::copy_n(&picture.rgb[std::size_t(3) * picture.width * y], 3 * picture.width, image.scanLine(y));
+	QSaveFile file(path); // nothing half-written is left behind
+	if (!file.open(QIODevice::WriteOnly) || !image.save(&file, "PNG") || !file.commit())
+		throw MLException("'" + path + "' cannot be written: " + file.errorString() + ".");
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	const Parameters& parameters = context.parameters;
+	const QString     path       = imageFile(parameters);
+	PictureOptions    options;
+	options.image.width     = parameters.integer("width", 1, 8192);
+	options.image.height    = parameters.integer("height", 1, 8192);
+	options.background      = parameters.color("background");
+	const auto kind         = static_cast<SurfaceKind>(parameters.choice("surface"));
+	const auto colorBy      = static_cast<ColorBy>(parameters.choice("color_by"));
+
+	const MeshModel& layer     = currentLayer(context.document);
+	const int        lineId    = parameters.layerId("lines");
+	const MeshModel* lineLayer = context.document.getMesh(lineId);
+	if (lineLayer == nullptr)
+		throw MLException("parameter 'lines' is " + QString::number(lineId) + ", and there is no such layer.");
+	if (lineLayer != &layer && lineLayer->cm.en == 0)
+		throw MLException("the layer '" + lineLayer->label() + "' named as 'lines' holds no edges.");
+	if (lineLayer != &layer)
+		requireSameMatrix(layer, *lineLayer, "the cloud and the layer of 'lines'");
+
+	const LayerPoints          points = readOrientedPoints(layer);
+	FilterResults              results;
+	Stopwatch                  total, stage;
+	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
+	const Camera camera = cameraOf(parameters, prepared, double(options.image.width) / options.image.height);
+	const NeighborSearch       search(prepared.cloud.positions);
+	const MinimumNeighborhoods minimum = minimumNeighborhoods(
+		prepared.cloud, search, {}, context.progress.sub(0.0, 0.2, "Finding neighborhoods"));
+	const ControlPoints control{prepared.cloud, search, minimum.spacing};
+	const Eigen::Matrix3Xd colors = colorsOf(colorBy, layer, points, prepared, control, minimum);
+	const PictureLines lines = lineLayer == &layer ? PictureLines() : linesOf(*lineLayer, prepared);
+	std::unique_ptr<const PointSetSurface> surface;
+	if (kind == SurfaceKind::CurvatureDriven)
+		surface = std::make_unique<CurvatureDrivenSurface>(control);
+	else
+		surface = std::make_unique<MovingLeastSquaresSurface>(control);
+	const RayTracer tracer(*surface, control, options.image);
+	results.seconds("preparation", stage.lap());
+	const Picture picture =
+		renderPicture(tracer, control, colors, lines, camera, options, context.progress.sub(0.2, 1.0, ""));
+	results.seconds("rendering", stage.lap());
+	savePicture(picture, path);
+
+	results.count("points", points.size());
+	results.count("pixels", std::ptrdiff_t(picture.width) * picture.height);
+	results.count("hits", picture.hits);
+	results.count("segments", static_cast<std::ptrdiff_t>(lines.segments.size()));
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec rayTraceFilter()
+{
+	return {
+		"Ray-Trace Point-Set Surface",
+		"save_ray_traced_point_set_image",
+		"Draws the smooth surface between the points of a cloud, without a mesh and without a screen: "
+		"every pixel's ray is followed onto the surface itself. Lines of another layer can be drawn on "
+		"it." +
+			helpInput +
+			"<br><br><b>Writes</b> a PNG file. The layers stay as they are. The surface goes through the "
+			"points as they are, noise and all: for noisy scans, denoise first." +
+			helpReferenceTejada,
+		FilterPlugin::PointSet + FilterPlugin::RangeMap,
+		FilterPlugin::SINGLE_MESH,
+		MeshModel::MM_NONE,
+		MeshModel::MM_NONE,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

@@ -1,4 +1,4 @@
-// Fits of overlapping quadrics and their blend.
+// What the patches over a point say about it, and their blend.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patch_blend.h"
 
@@ -6,11 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "face_projection.h"
-#include "surface_patch.h"
 
 namespace curvature_lines {
 
@@ -19,24 +17,11 @@ namespace {
 using Eigen::Vector3d;
 using Support = BlendOptions::Support;
 
-constexpr double slabNoise         = 3.0;  // noise units that a ball reaches beyond the disk of a patch
-constexpr double minOpposing       = -0.2; // cosine; beyond it is another sheet
-constexpr double minBent           = 0.35; // cosine; arcs stay well below a quarter of a turn
 constexpr double acrossEdge        = 0.1; // gate: a normal that deviates by 1.5 widths
 constexpr double maxAcrossLeverage = 0.2; // of a patch that tells where the edge is
-constexpr double maxGate           = 2.0;  // gate widths
-constexpr double heightCutoff      = 5.0;  // noise units
-constexpr double growth[] = {1.0 / 3.0, 0.6, 1.0, 1.0};
 constexpr double radiusRatio       = 1.25; // of overlapping patches: the spacing is smooth
-constexpr double maxPurityExcess   = 40.0;
 constexpr double minLeverage       = 1e-12;
 constexpr double minRemaining      = 0.02; // of a residual, by a point's own influence
-
-// The patch and how far its residuals fit the noise, 0..1.
-struct BlendPatch {
-	SurfacePatch surface;
-	double       purity = 1.0;
-};
 
 // What a patch beyond an edge says about a point.
 struct FaceVote {
@@ -44,11 +29,9 @@ struct FaceVote {
 	double   height, weight;
 };
 
+// Kept by each thread.
 struct Scratch {
 	std::vector<Index>    near;
-	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
-	LocalSamples<1>       samples;
-	std::vector<double>   residuals;
 	std::vector<FaceVote> across;
 
 	static Scratch& ofThisThread()
@@ -57,203 +40,6 @@ struct Scratch {
 		return scratch;
 	}
 };
-
-double supportRadius(const BlendInput& input, const BlendOptions& options, Index i)
-{
-	return options.radius * input.spacing[i];
-}
-
-// Guides of the other supports have left the noise behind.
-double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
-{
-	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i]) : radius;
-}
-
-void gather(
-	const BlendInput&     input,
-	const BlendGuide&     guide,
-	const NeighborSearch& search,
-	Index                 center,
-	double                reach,
-	Scratch&              scratch)
-{
-	const Vector3d origin = guide.positions.col(center);
-	search.within(origin, reach, scratch.near);
-	scratch.height.clear();
-	scratch.place.clear();
-	scratch.normal.clear();
-	for (const Index j : scratch.near) {
-		scratch.height.push_back(input.cloud.positions.col(j) - origin);
-		scratch.place.push_back(guide.positions.col(j) - origin);
-		scratch.normal.push_back(guide.normals.col(j));
-	}
-	scratch.samples.reserve(scratch.near.size());
-}
-
-Vector3d principalNormal(const Scratch& scratch, double reach)
-{
-	Vector3d        mean = Vector3d::Zero(), orientation = Vector3d::Zero();
-	Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-	double          sum     = 0.0;
-	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-		const Vector3d& p = scratch.height[k];
-		const double    w = supportWeight(scratch.place[k].norm() / reach, 0.0);
-		sum += w;
-		mean += w * p;
-		moments += w * p * p.transpose();
-		orientation += w * scratch.normal[k];
-	}
-	moments -= mean * mean.transpose() / sum;
-	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
-	axes.computeDirect(moments);
-	const Vector3d normal = axes.eigenvectors().col(0);
-	return normal.dot(orientation) < 0.0 ? Vector3d(-normal) : normal;
-}
-
-// Geman-McClure weight of a residual in units of its width.
-double gateWeight(double e2)
-{
-	return e2 < maxGate * maxGate ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
-}
-
-// Arc over chord of a circular arc that turns by an angle of this cosine: t / sin t as a series in
-// sin^2(t/2), to six digits down to minBent.
-double arcOverChord(double cosine)
-{
-	constexpr int terms = 12;
-	const double  s     = 0.5 * std::max(0.0, 1.0 - cosine);
-	double        sum   = 1.0;
-	for (int k = terms; k > 0; --k)
-		sum = 1.0 + sum * s * (2.0 * k / (2.0 * k + 1.0));
-	return sum;
-}
-
-void addSample(Scratch& scratch, double x, double y, double z, double w)
-{
-	if (w > 0.0)
-		scratch.samples.add(x, y, w, Eigen::Matrix<double, 1, 1>(z));
-}
-
-bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
-{
-	patch.frame = TangentFrame(principalNormal(scratch, reach));
-	for (const bool last : {false, true}) {
-		scratch.samples.reserve(scratch.near.size());
-		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
-			if (scratch.normal[k].dot(patch.frame.n) > minOpposing)
-				addSample(
-					scratch,
-					p.x(),
-					p.y(),
-					scratch.height[k].dot(patch.frame.n),
-					supportWeight(p.x(), p.y()));
-		}
-		if (!fitPatch(patch, scratch.samples, scratch.residuals))
-			return false;
-		if (!last)
-			patch.tilt();
-	}
-	return true;
-}
-
-double normalGate(const SurfacePatch& patch, const Vector3d& n, double x, double y, double width)
-{
-	return gateWeight((n - patch.normal(x, y)).squaredNorm() / (width * width));
-}
-
-// Grows from the centre: the gate of each step is the normal that the step before predicts.
-bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
-{
-	const double cutoff = heightCutoff * noise;
-	for (int step = 0; step < 4; ++step) {
-		const double shrink = growth[step];
-		const bool   last   = step == 3;
-		scratch.samples.reserve(scratch.near.size());
-		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-			const Eigen::Vector2d place = patch.frame.toPlane(scratch.place[k]) / patch.radius;
-			if (place.squaredNorm() >= shrink * shrink)
-				continue;
-			const double gate =
-				normalGate(patch, scratch.normal[k], place.x(), place.y(), width);
-			if (gate <= 0.0)
-				continue;
-			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
-			const double z = scratch.height[k].dot(patch.frame.n);
-			if (shrink == 1.0 && std::abs(patch.residual({p.x(), p.y(), z})) > cutoff)
-				continue;
-			const double w = gate * supportWeight(place.x() / shrink, place.y() / shrink);
-			addSample(scratch, p.x(), p.y(), z, w);
-		}
-		const SurfacePatch before = patch;
-		if (fitPatch(patch, scratch.samples, scratch.residuals))
-			continue;
-		if (last)
-			return false;
-		patch = before;
-	}
-	return true;
-}
-
-// Where a bent patch sees a point: x and y from the guide, z from the input.
-struct Sight {
-	double x = 0.0, y = 0.0, z = 0.0;
-	bool   seen = false;
-};
-
-Sight bentSight(
-	const SurfacePatch& patch, const Vector3d& height, const Vector3d& place, const Vector3d& normal)
-{
-	const double cosine = normal.dot(patch.frame.n);
-	if (cosine < minBent)
-		return {};
-	const double          stretch = arcOverChord(cosine) / patch.radius;
-	const Eigen::Vector2d p       = patch.frame.toPlane(place);
-	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
-}
-
-bool fitBent(SurfacePatch& patch, Scratch& scratch)
-{
-	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-		const Sight s = bentSight(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
-		if (s.seen)
-			addSample(scratch, s.x, s.y, s.z, supportWeight(s.x, s.y));
-	}
-	return fitPatch(patch, scratch.samples, scratch.residuals);
-}
-
-// Patches bent over an edge leave residuals larger than the noise explains.
-double purityOf(const SurfacePatch& patch, double noise, double rate)
-{
-	if (!(noise > 0.0) || rate <= 0.0)
-		return 1.0;
-	const double ratio  = patch.scale / noise;
-	const double excess = (ratio * ratio - 1.0) / std::sqrt(2.0 / patch.effectiveCount) - 1.0;
-	return std::exp(-rate * std::clamp(excess, 0.0, maxPurityExcess));
-}
-
-BlendPatch patchAt(
-	const BlendInput&     input,
-	const BlendGuide&     guide,
-	const BlendOptions&   options,
-	const NeighborSearch& search,
-	Index                 i)
-{
-	BlendPatch    patch;
-	Scratch&      scratch = Scratch::ofThisThread();
-	const double  radius  = supportRadius(input, options, i);
-	const double  reach   = ballRadius(input, options, radius, i);
-	SurfacePatch& surface = patch.surface;
-	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
-	gather(input, guide, search, i, reach, scratch);
-	const bool fitted =
-		options.support == Support::Free  ? fitFree(surface, reach, scratch) :
-		options.support == Support::Gated ? fitGated(surface, input.noise[i], options.gateWidth, scratch) :
-											fitBent(surface, scratch);
-	surface.valid = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
-	patch.purity  = purityOf(surface, input.noise[i], options.purity);
-	return patch;
-}
 
 // What one patch says about one point.
 struct Prediction {
@@ -392,10 +178,16 @@ private:
 };
 
 // Wide patches need fewer centres to overlap as much.
-Index centerCount(Index n, const BlendOptions& options)
+std::vector<Index> centersOf(const BlendInput& input, const BlendOptions& options)
 {
-	const double points = EIGEN_PI * options.radius * options.radius; // of a patch
-	return std::max<Index>(1, static_cast<Index>(n * std::min(1.0, options.overlap / points)));
+	const Index        n = input.cloud.size();
+	std::vector<Index> centers;
+	for (Index i = 0; i < n; ++i) {
+		const double radius = supportRadius(input, options, i) / input.spacing[i];
+		if (input.order.rank[i] * EIGEN_PI * radius * radius < options.overlap * n)
+			centers.push_back(i);
+	}
+	return centers;
 }
 
 CoveringPatches::CoveringPatches(
@@ -407,7 +199,7 @@ CoveringPatches::CoveringPatches(
 		m_input(input),
 		m_guide(guide),
 		m_options(options),
-		m_points(input.order.sample(centerCount(input.cloud.size(), options))),
+		m_points(centersOf(input, options)),
 		m_centers(columnsOf(guide.positions, m_points)),
 		m_search(m_centers),
 		m_patches(m_centers.cols())
@@ -470,14 +262,15 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 				 patch.surface.origin - position,
 				 p.residual,
 				 p.weight * patch.purity});
-		const double w = p.weight * p.gate * patch.purity;
+		const double known = precision(m_input, i, m_points[j]);
+		const double w = p.weight * p.gate * patch.purity * known;
 		if (w <= 0.0)
 			continue;
 		const double a = w * acceptance(m_options, p.residual, noise);
-		total += p.weight * p.gate;
+		total += p.weight * p.gate * known;
 		pure += w;
 		residual += w * p.residual;
-		influence += w * p.influence;
+		influence += w * p.influence / known;
 		accepted += a;
 		move -= a * p.move * p.direction;
 		direction += a * p.normal;

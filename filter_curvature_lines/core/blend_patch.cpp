@@ -1,0 +1,243 @@
+// Fits to points of the ball, whose weights tell the supports apart.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "blend_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+using Support = BlendOptions::Support;
+
+constexpr double slabNoise       = 3.0;  // noise units that a ball reaches beyond the disk of a patch
+constexpr double minBent         = 0.35; // cosine; arcs stay well below a quarter of a turn
+constexpr double maxGate         = 2.0;  // gate widths
+constexpr double heightCutoff    = 5.0;  // noise units
+constexpr double growth[]        = {1.0 / 3.0, 0.6, 1.0, 1.0};
+constexpr double maxPurityExcess = 40.0;
+
+struct Scratch {
+	std::vector<Index>    near;
+	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
+	std::vector<double>   precision;
+	LocalSamples<1>       samples;
+	std::vector<double>   residuals;
+
+	static Scratch& ofThisThread()
+	{
+		thread_local Scratch scratch;
+		return scratch;
+	}
+};
+
+void gather(
+	const BlendInput&     input,
+	const BlendGuide&     guide,
+	const NeighborSearch& search,
+	Index                 center,
+	double                reach,
+	Scratch&              scratch)
+{
+	const Vector3d origin = guide.positions.col(center);
+	search.within(origin, reach, scratch.near);
+	scratch.height.clear();
+	scratch.place.clear();
+	scratch.normal.clear();
+	scratch.precision.clear();
+	for (const Index j : scratch.near) {
+		scratch.height.push_back(input.cloud.positions.col(j) - origin);
+		scratch.place.push_back(guide.positions.col(j) - origin);
+		scratch.normal.push_back(guide.normals.col(j));
+		scratch.precision.push_back(precision(input, center, j));
+	}
+	scratch.samples.reserve(scratch.near.size());
+}
+
+Vector3d principalNormal(const Scratch& scratch, double reach)
+{
+	Vector3d        mean = Vector3d::Zero(), orientation = Vector3d::Zero();
+	Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+	double          sum     = 0.0;
+	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+		const Vector3d& p = scratch.height[k];
+		const double    w = supportWeight(scratch.place[k].norm() / reach, 0.0);
+		sum += w;
+		mean += w * p;
+		moments += w * p * p.transpose();
+		orientation += w * scratch.normal[k];
+	}
+	moments -= mean * mean.transpose() / sum;
+	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+	axes.computeDirect(moments);
+	const Vector3d normal = axes.eigenvectors().col(0);
+	return normal.dot(orientation) < 0.0 ? Vector3d(-normal) : normal;
+}
+
+// Arc over chord of a circular arc that turns by an angle of this cosine: t / sin t as a series in
+// sin^2(t/2), to six digits down to minBent.
+double arcOverChord(double cosine)
+{
+	constexpr int terms = 12;
+	const double  s     = 0.5 * std::max(0.0, 1.0 - cosine);
+	double        sum   = 1.0;
+	for (int k = terms; k > 0; --k)
+		sum = 1.0 + sum * s * (2.0 * k / (2.0 * k + 1.0));
+	return sum;
+}
+
+void addSample(Scratch& scratch, double x, double y, double z, double w)
+{
+	if (w > 0.0)
+		scratch.samples.add(x, y, w, Eigen::Matrix<double, 1, 1>(z));
+}
+
+bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
+{
+	patch.frame = TangentFrame(principalNormal(scratch, reach));
+	for (const bool last : {false, true}) {
+		scratch.samples.reserve(scratch.near.size());
+		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
+			if (scratch.normal[k].dot(patch.frame.n) > minOpposing)
+				addSample(
+					scratch,
+					p.x(),
+					p.y(),
+					scratch.height[k].dot(patch.frame.n),
+					scratch.precision[k] * supportWeight(p.x(), p.y()));
+		}
+		if (!fitPatch(patch, scratch.samples, scratch.residuals))
+			return false;
+		if (!last)
+			patch.tilt();
+	}
+	return true;
+}
+
+double normalGate(const SurfacePatch& patch, const Vector3d& n, double x, double y, double width)
+{
+	return gateWeight((n - patch.normal(x, y)).squaredNorm() / (width * width));
+}
+
+// Grows from the centre: the gate of each step is the normal that the step before predicts.
+bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
+{
+	const double cutoff = heightCutoff * noise;
+	for (int step = 0; step < 4; ++step) {
+		const double shrink = growth[step];
+		const bool   last   = step == 3;
+		scratch.samples.reserve(scratch.near.size());
+		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+			const Eigen::Vector2d place = patch.frame.toPlane(scratch.place[k]) / patch.radius;
+			if (place.squaredNorm() >= shrink * shrink)
+				continue;
+			const double gate =
+				normalGate(patch, scratch.normal[k], place.x(), place.y(), width);
+			if (gate <= 0.0)
+				continue;
+			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
+			const double z = scratch.height[k].dot(patch.frame.n);
+			if (shrink == 1.0 && std::abs(patch.residual({p.x(), p.y(), z})) > cutoff)
+				continue;
+			const double w = gate * scratch.precision[k] *
+							 supportWeight(place.x() / shrink, place.y() / shrink);
+			addSample(scratch, p.x(), p.y(), z, w);
+		}
+		const SurfacePatch before = patch;
+		if (fitPatch(patch, scratch.samples, scratch.residuals))
+			continue;
+		if (last)
+			return false;
+		patch = before;
+	}
+	return true;
+}
+
+bool fitBent(SurfacePatch& patch, Scratch& scratch)
+{
+	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+		const Sight s = bentSight(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
+		if (s.seen)
+			addSample(scratch, s.x, s.y, s.z, scratch.precision[k] * supportWeight(s.x, s.y));
+	}
+	return fitPatch(patch, scratch.samples, scratch.residuals);
+}
+
+// Patches bent over an edge leave residuals larger than the noise explains.
+double purityOf(const SurfacePatch& patch, double noise, double rate)
+{
+	if (!(noise > 0.0) || rate <= 0.0)
+		return 1.0;
+	const double ratio  = patch.scale / noise;
+	const double excess = (ratio * ratio - 1.0) / std::sqrt(2.0 / patch.effectiveCount) - 1.0;
+	return std::exp(-rate * std::clamp(excess, 0.0, maxPurityExcess));
+}
+
+} // namespace
+
+double supportRadius(const BlendInput& input, const BlendOptions& options, Index i)
+{
+	const double radius = options.radius * (input.unit.empty() ? input.spacing[i] : input.unit[i]);
+	return input.floor.empty() ? radius : std::max(radius, input.floor[i]);
+}
+
+// Guides of the other supports have left the noise behind.
+double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
+{
+	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i]) : radius;
+}
+
+double precision(const BlendInput& input, Index i, Index j)
+{
+	if (input.evenNoise)
+		return 1.0;
+	const double ratio = input.noise[i] / input.noise[j];
+	return ratio * ratio;
+}
+
+double gateWeight(double e2)
+{
+	return e2 < maxGate * maxGate ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
+}
+
+Sight bentSight(
+	const SurfacePatch& patch, const Vector3d& height, const Vector3d& place, const Vector3d& normal)
+{
+	const double cosine = normal.dot(patch.frame.n);
+	if (cosine < minBent)
+		return {};
+	const double          stretch = arcOverChord(cosine) / patch.radius;
+	const Eigen::Vector2d p       = patch.frame.toPlane(place);
+	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
+}
+
+BlendPatch patchAt(
+	const BlendInput&     input,
+	const BlendGuide&     guide,
+	const BlendOptions&   options,
+	const NeighborSearch& search,
+	Index                 i)
+{
+	BlendPatch    patch;
+	Scratch&      scratch = Scratch::ofThisThread();
+	const double  radius  = supportRadius(input, options, i);
+	const double  reach   = ballRadius(input, options, radius, i);
+	SurfacePatch& surface = patch.surface;
+	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
+	gather(input, guide, search, i, reach, scratch);
+	const bool fitted =
+		options.support == Support::Free  ? fitFree(surface, reach, scratch) :
+		options.support == Support::Gated ? fitGated(surface, input.noise[i], options.gateWidth, scratch) :
+											fitBent(surface, scratch);
+	surface.valid = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
+	patch.purity  = purityOf(surface, input.noise[i], options.purity);
+	return patch;
+}
+
+} // namespace curvature_lines

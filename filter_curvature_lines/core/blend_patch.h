@@ -1,0 +1,84 @@
+// One of the overlapping local quadrics of the denoising: the points it is fitted to, from where, and how
+// far they look like one noisy surface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "spatial_order.h"
+#include "surface_patch.h"
+
+namespace curvature_lines {
+
+// What patches are fitted to. Columns are in `order`; the first of its shuffled order are the centres of
+// patches.
+struct BlendInput {
+	SpatialOrder        order;
+	PointCloud          cloud;
+	std::vector<double> spacing; // per point, smooth: side of the square that holds one point
+	std::vector<double> noise;   // per point: standard deviation of the positions, a length
+	bool                evenNoise = true; // the same for all points
+	std::vector<double> unit;    // per point: the unit of radii; the spacing if there are none
+	std::vector<double> floor;   // per point: least radius, if any
+};
+
+// Where the points are thought to be: tells frames and gates. Heights are always those of the input,
+// so that repeated passes do not shrink the surface.
+struct BlendGuide {
+	Eigen::Matrix3Xd positions, normals;
+};
+
+struct BlendOptions {
+	enum class Support {
+		Free,  // frame by principal components; normals only tell sheets apart. For noisy guides
+		Gated, // points whose guide normals vary linearly with the place belong: stops at edges
+		Bent,  // arc lengths along the guide instead of their projection: reaches further round a bend
+	};
+	Support support    = Support::Free;
+	double  radius     = 5.0; // in units
+	double  gateWidth  = 0.7; // Gated: deviation from the linear normal that quarters a weight
+	double  purity     = 0.0; // how fast a patch loses weight as its residuals exceed the noise
+	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: no limit
+	bool    edges      = false; // Gated: points beside an edge also see the faces beyond it
+	double  overlap    = 38.0; // patches that cover a point, on average
+};
+
+// The patch and how far its residuals fit the noise, 0..1.
+struct BlendPatch {
+	SurfacePatch surface;
+	double       purity = 1.0;
+};
+
+// `search`: over the guide's positions.
+BlendPatch patchAt(
+	const BlendInput&     input,
+	const BlendGuide&     guide,
+	const BlendOptions&   options,
+	const NeighborSearch& search,
+	Index                 i);
+
+// Where a bent patch sees a point: x and y from the guide, z from the input.
+struct Sight {
+	double x = 0.0, y = 0.0, z = 0.0;
+	bool   seen = false;
+};
+
+// `height` and `place`: of the input and of the guide, from the patch's origin; `normal`: of the guide.
+Sight bentSight(
+	const SurfacePatch&    patch,
+	const Eigen::Vector3d& height,
+	const Eigen::Vector3d& place,
+	const Eigen::Vector3d& normal);
+
+// Geman-McClure weight of a squared residual in units of its width; 0 beyond two widths.
+double gateWeight(double e2);
+
+// Normals that oppose each other further are of another sheet (cosine).
+constexpr double minOpposing = -0.2;
+
+// Weight of point j in the patch at i by its noise.
+double precision(const BlendInput& input, Index i, Index j);
+
+// Of the patch at a point, and of the ball that holds all points the patch may see.
+double supportRadius(const BlendInput& input, const BlendOptions& options, Index i);
+double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i);
+
+} // namespace curvature_lines

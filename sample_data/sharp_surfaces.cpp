@@ -49,12 +49,14 @@ public:
 
 	Matrix3Xd grid(int points) const override
 	{
-		const int       onCaps = static_cast<int>(std::lround(0.5 * points * R / (2.0 * half + R)));
-		const int       rows   = std::max(2, static_cast<int>(std::lround(std::sqrt((points - 2 * onCaps) * half / (pi * R)))));
-		const int       columns = std::max(3, static_cast<int>(std::lround(double(points - 2 * onCaps) / rows)));
-		const double    goldenAngle = pi * (3.0 - std::sqrt(5.0));
-		Matrix3Xd       grid(3, rows * columns + 2 * onCaps);
-		Eigen::Index    next = 0;
+		const auto   rounded = [](double count) { return static_cast<int>(std::lround(count)); };
+		const int    onCaps  = rounded(0.5 * points * R / (2.0 * half + R)); // on each
+		const double onSide  = points - 2 * onCaps;
+		const int    rows    = std::max(2, rounded(std::sqrt(onSide * half / (pi * R))));
+		const int    columns = std::max(3, rounded(onSide / rows));
+		const double goldenAngle = pi * (3.0 - std::sqrt(5.0));
+		Matrix3Xd    grid(3, rows * columns + 2 * onCaps);
+		Eigen::Index next = 0;
 		for (int r = 0; r < rows; ++r)
 			for (int c = 0; c < columns; ++c)
 				grid.col(next++) = at(R, 2.0 * pi * c / columns, half * (2.0 * (r + 0.5) / rows - 1.0));

@@ -15,6 +15,7 @@ const std::vector<FilterSpec>& filterTable()
 		quadMeshFilter(),
 		reconstructionFilter(),
 		mWeightedCurvatureFilter(),
+		sharpFeaturesFilter(),
 	};
 	return table;
 }

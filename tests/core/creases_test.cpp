@@ -119,7 +119,8 @@ double distanceTo(const Edges& edges, const Vector3d& p)
 	double nearest = 1e9;
 	for (Eigen::Index e = 0; e < edges.from.cols(); ++e) {
 		const Vector3d a = edges.from.col(e), d = edges.to.col(e) - a;
-		nearest = std::min(nearest, (a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d - p).norm());
+		const double   t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+		nearest          = std::min(nearest, (a + t * d - p).norm());
 	}
 	return nearest;
 }
@@ -189,7 +190,7 @@ TEST(Creases, CleanCube)
 	expectCube(found, 1e-5, 1e-4);
 	for (const CreaseCurve& curve : found.creases.curves) {
 		EXPECT_NEAR(curve.angle.mean(), EIGEN_PI / 2.0, 0.01);
-		EXPECT_NEAR(curve.length() / (curve.size() - 1), 0.7 * found.minimum.medianSpacing, 0.1 * found.minimum.medianSpacing);
+		EXPECT_NEAR(curve.length() / (curve.size() - 1) / found.minimum.medianSpacing, 0.7, 0.05);
 	}
 }
 
@@ -406,18 +407,24 @@ TEST(Creases, SpacingAsAsked)
 	EXPECT_EQ(found.creases.curves.size(), 12u);
 	for (const CreaseCurve& curve : found.creases.curves)
 		EXPECT_NEAR(curve.length() / (curve.size() - 1), 0.02, 0.001);
+	options.spacing = 10.0;
+	for (const CreaseCurve& curve : find(cube.positions, cube.normals, options).creases.curves)
+		EXPECT_EQ(curve.size(), 2);
+	options.spacing = 1e-12; // no finer than sensible
+	for (const CreaseCurve& curve : find(cube.positions, cube.normals, options).creases.curves)
+		EXPECT_LT(curve.size(), 2000);
 }
 
 TEST(Creases, OutliersLeftOver)
 {
 	const auto   cube = sampled("cube", 6000);
-	std::mt19937 engine(3);
 	Matrix3Xd    positions(3, 6100), normals(3, 6100);
 	positions.leftCols(6000) = cube.positions;
 	normals.leftCols(6000)   = cube.normals;
 	samples::Random random(1, 9);
 	for (int i = 6000; i < 6100; ++i) {
-		positions.col(i) = Vector3d(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6));
+		for (int c = 0; c < 3; ++c)
+			positions(c, i) = random.uniform(-0.6, 0.6);
 		normals.col(i)   = random.normal3().normalized();
 	}
 	const Found found = find(positions, normals);

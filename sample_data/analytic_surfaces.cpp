@@ -14,15 +14,17 @@ const std::map<std::string, SurfacePointer>& registry()
 {
 	static const auto surfaces = [] {
 		std::map<std::string, SurfacePointer> s;
-		s["torus"]      = makeTorus();
-		s["sphere"]     = makeCapsule(1.0, 0.0);
-		s["cylinder"]   = makeCylinder();
-		s["helicoid"]   = makeHelicoid();
-		s["cube"]       = makeCube();
-		s["ellipsoid"]  = makeEllipsoid();
-		s["capsule"]    = makeCapsule(0.5, 1.0);
-		s["bent_sheet"] = makeBentSheet();
-		s["plane"]      = makePlane();
+		s["torus"]           = makeTorus();
+		s["sphere"]          = makeCapsule(1.0, 0.0);
+		s["cylinder"]        = makeCylinder();
+		s["helicoid"]        = makeHelicoid();
+		s["cube"]            = makeCube();
+		s["ellipsoid"]       = makeEllipsoid();
+		s["capsule"]         = makeCapsule(0.5, 1.0);
+		s["bent_sheet"]      = makeBentSheet();
+		s["plane"]           = makePlane();
+		s["l_block"]         = makeLBlock();
+		s["capped_cylinder"] = makeCappedCylinder();
 		return s;
 	}();
 	return surfaces;

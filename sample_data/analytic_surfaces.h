@@ -66,6 +66,8 @@ public:
 // capsule     cylinder of radius 0.5 and height 1 with hemispherical caps: umbilic and non-umbilic regions
 // bent_sheet  unit square that goes over into a quarter cylinder of radius 0.5: flat and singly curved; open
 // plane       unit square, z = 0, normal +z; open
+// capped_cylinder  radius 0.5, height 1, closed by two discs: circular sharp edges
+// l_block     three cubes of edge 0.5 in an L, in the plane of x and y: 17 convex edges and a concave one
 const std::vector<std::string>& surfaceNames();
 // Throws std::invalid_argument for a name not listed above.
 const AnalyticSurface& surface(const std::string& name);

@@ -18,6 +18,8 @@ std::unique_ptr<const AnalyticSurface> makeCylinder();
 std::unique_ptr<const AnalyticSurface> makeHelicoid();
 std::unique_ptr<const AnalyticSurface> makeBentSheet();
 std::unique_ptr<const AnalyticSurface> makePlane();
+std::unique_ptr<const AnalyticSurface> makeCappedCylinder();
+std::unique_ptr<const AnalyticSurface> makeLBlock();
 
 namespace detail {
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Dense>
+
+#include "crease_ends.h"
+#include "disjoint_sets.h"
 
 namespace curvature_lines {
 
@@ -15,55 +17,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double reachSpacings = 4.0; // from the end of a curve to its corner
-constexpr double reachNoise    = 4.0;
-constexpr double behind        = 3.0;  // spacings that a curve may go beyond its corner
-constexpr double straightOn    = 0.85; // cosine: two ends that continue each other
-constexpr double parallel      = 0.9;
-constexpr double minLength     = 5.0; // spacings; a shorter curve needs corners at both ends
-constexpr double minLoop       = 8.0;
-constexpr double pull          = 1e-3; // of a corner to the ends of its curves, where the faces leave it free
-
-// One end of a trace, the tangent outward.
-struct End {
-	Index       trace;
-	bool        atBack;
-	CreasePoint vertex;
-};
-
-double lengthOf(const CreaseTrace& trace)
-{
-	double sum = 0.0;
-	for (std::size_t v = 1; v < trace.vertices.size(); ++v)
-		sum += (trace.vertices[v].position - trace.vertices[v - 1].position).norm();
-	return sum;
-}
-
-void reverse(CreaseTrace& trace)
-{
-	std::reverse(trace.vertices.begin(), trace.vertices.end());
-	for (CreasePoint& v : trace.vertices)
-		v = v.reversed();
-}
-
-std::vector<End> endsOf(const std::vector<CreaseTrace>& traces)
-{
-	std::vector<End> ends;
-	for (Index t = 0; t < static_cast<Index>(traces.size()); ++t)
-		if (!traces[t].closed) {
-			ends.push_back({t, false, traces[t].vertices.front().reversed()});
-			ends.push_back({t, true, traces[t].vertices.back()});
-		}
-	return ends;
-}
-
-Eigen::Matrix3Xd positionsOf(const std::vector<End>& ends)
-{
-	Eigen::Matrix3Xd positions(3, ends.size());
-	for (std::size_t e = 0; e < ends.size(); ++e)
-		positions.col(e) = ends[e].vertex.position;
-	return positions;
-}
+constexpr double parallel  = 0.9;  // cosine
+constexpr double minLength = 5.0;  // spacings; a shorter curve needs corners at both ends
+constexpr double pull      = 1e-3; // of a corner to the ends of its curves, if the faces leave it free
 
 // The point nearest to all faces of the vertices.
 Vector3d cornerOf(const std::vector<const CreasePoint*>& vertices)
@@ -83,155 +39,68 @@ Vector3d cornerOf(const std::vector<const CreasePoint*>& vertices)
 
 class Network {
 public:
-	Network(const CreaseTracing& tracing, std::vector<CreaseTrace> traces, double step) :
-			m_tracing(tracing), m_traces(std::move(traces)), m_step(step)
+	Network(const CreaseTracing& tracing, double step, std::vector<CreaseTrace> traces) :
+			m_tracing(tracing), m_step(step), m_traces(std::move(traces))
 	{
 	}
 
 	void build()
 	{
 		do {
-			joinGaps();
+			joinGaps(m_tracing, m_step, m_traces);
 			findCorners();
 			cutAtCorners();
 		} while (dropStubs());
 	}
 
-	Creases result() const;
+	Creases result(double spacing) const;
 
 private:
-	double reach(const CreasePoint& v) const
-	{
-		return reachSpacings * v.spacing + reachNoise * m_tracing.noise();
-	}
+	double reach(const CreasePoint& v) const { return reachOf(v, m_tracing.noise()); }
 	// Whether the crease that ends there may end in `corner` instead.
 	bool accepts(const CreasePoint& end, const Vector3d& corner) const
 	{
 		const Vector3d d     = corner - end.position;
 		const double   along = d.dot(end.tangent);
-		return d.norm() <= reach(end) && along >= -behind * end.spacing &&
+		return d.norm() <= reach(end) && along >= -spacingsBehind * end.spacing &&
 			(d - along * end.tangent).norm() <= m_tracing.width(end);
 	}
-	double lengthInSpacings(const CreaseTrace& trace) const
-	{
-		return lengthOf(trace) / trace.vertices[trace.vertices.size() / 2].spacing;
-	}
-
-	bool continues(const End& a, const End& b) const;
-	void joinGaps();
 	void findCorners();
-	void findJunction(const End& end, Index& corner);
+	void findJunction(const CreaseEnd& end, Index& corner);
 	void cutAtCorners();
 	bool dropStubs();
 	std::vector<CreasePoint> betweenCorners(Index trace) const;
-	CreaseCurve              resampled(Index trace) const;
+	CreaseCurve              resampled(Index trace, double spacing) const;
 
 	const CreaseTracing&              m_tracing;
+	double                            m_step;
 	std::vector<CreaseTrace>          m_traces;
 	std::vector<std::array<Index, 2>> m_corner; // per trace: at its front and back, -1: none
 	std::vector<Vector3d>             m_corners;
-	double                            m_step;
 };
-
-// Whether b is the other side of a gap in the crease that ends in a.
-bool Network::continues(const End& a, const End& b) const
-{
-	if (a.trace == b.trace && lengthInSpacings(m_traces[a.trace]) < minLoop)
-		return false;
-	const CreasePoint onward = b.vertex.reversed();
-	const Vector3d    d      = onward.position - a.vertex.position;
-	const double      along  = d.dot(a.vertex.tangent);
-	return a.vertex.angle * onward.angle > 0.0 && a.vertex.tangent.dot(onward.tangent) > straightOn &&
-		a.vertex.left.dot(onward.left) > straightOn && a.vertex.right.dot(onward.right) > straightOn &&
-		d.norm() < reach(a.vertex) && along > -behind * a.vertex.spacing &&
-		(d - along * a.vertex.tangent).norm() < m_tracing.width(a.vertex);
-}
-
-void Network::joinGaps()
-{
-	const std::vector<End> ends = endsOf(m_traces);
-	if (ends.empty())
-		return;
-	const Eigen::Matrix3Xd positions = positionsOf(ends);
-	const NeighborSearch   search(positions);
-	std::vector<std::tuple<double, Index, Index>> candidates;
-	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
-		for (const Index b : search.within(positions.col(a), reach(ends[a].vertex)))
-			if (a < b && continues(ends[a], ends[b]) && continues(ends[b], ends[a]))
-				candidates.emplace_back((positions.col(b) - positions.col(a)).norm(), a, b);
-	std::sort(candidates.begin(), candidates.end());
-	std::vector<Index> mate(ends.size(), -1);
-	for (const auto& [distance, a, b] : candidates)
-		if (mate[a] < 0 && mate[b] < 0) {
-			mate[a] = b;
-			mate[b] = a;
-		}
-
-	// Ends come in pairs, front and back of a trace: e ^ 1 is the other end.
-	std::vector<CreaseTrace> joined;
-	std::vector<char>        used(ends.size(), 0);
-	for (CreaseTrace& trace : m_traces)
-		if (trace.closed)
-			joined.push_back(std::move(trace));
-	const auto walk = [&](Index first) {
-		CreaseTrace chain;
-		Index       entry = first;
-		do {
-			used[entry] = used[entry ^ 1] = 1;
-			CreaseTrace& next             = m_traces[ends[entry].trace];
-			if (ends[entry].atBack)
-				reverse(next);
-			auto from = next.vertices.begin();
-			if (!chain.vertices.empty()) { // what overlaps
-				const CreasePoint last = chain.vertices.back();
-				while (from + 1 != next.vertices.end() &&
-					   (from->position - last.position).dot(last.tangent) < 0.3 * m_step)
-					++from;
-			}
-			chain.vertices.insert(chain.vertices.end(), from, next.vertices.end());
-			entry = mate[entry ^ 1];
-		} while (entry >= 0 && entry != first);
-		chain.closed = entry == first;
-		joined.push_back(std::move(chain));
-	};
-	const auto count = static_cast<Index>(ends.size());
-	for (Index e = 0; e < count; ++e)
-		if (!used[e] && mate[e] < 0)
-			walk(e);
-	for (Index e = 0; e < count; ++e)
-		if (!used[e])
-			walk(e);
-	m_traces = std::move(joined);
-}
 
 void Network::findCorners()
 {
 	m_corners.clear();
 	m_corner.assign(m_traces.size(), {-1, -1});
-	const std::vector<End> ends = endsOf(m_traces);
+	const std::vector<CreaseEnd> ends = endsOf(m_traces);
 	if (ends.empty())
 		return;
 	const Eigen::Matrix3Xd positions = positionsOf(ends);
 	const NeighborSearch   search(positions);
-	std::vector<Index>     group(ends.size());
-	std::iota(group.begin(), group.end(), 0);
-	const auto rootOf = [&](Index e) {
-		while (group[e] != e)
-			e = group[e];
-		return e;
-	};
+	DisjointSets           groups(static_cast<Index>(ends.size()));
 	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
 		for (const Index b : search.within(positions.col(a), 2.0 * reach(ends[a].vertex))) {
 			if (b <= a ||
-				(ends[a].trace == ends[b].trace && lengthInSpacings(m_traces[ends[a].trace]) < minLoop))
+				(ends[a].trace == ends[b].trace && lengthInSpacings(m_traces[ends[a].trace]) < shortestLoop))
 				continue;
 			const Vector3d corner = cornerOf({&ends[a].vertex, &ends[b].vertex});
 			if (accepts(ends[a].vertex, corner) && accepts(ends[b].vertex, corner))
-				group[std::max(rootOf(a), rootOf(b))] = std::min(rootOf(a), rootOf(b));
+				groups.join(a, b);
 		}
 	std::vector<std::vector<Index>> members(ends.size());
 	for (Index e = 0; e < static_cast<Index>(ends.size()); ++e)
-		members[rootOf(e)].push_back(e);
+		members[groups.find(e)].push_back(e);
 	for (std::vector<Index>& list : members) {
 		Vector3d corner;
 		while (list.size() > 1) {
@@ -254,13 +123,13 @@ void Network::findCorners()
 			m_corner[ends[e].trace][ends[e].atBack] = static_cast<Index>(m_corners.size());
 		m_corners.push_back(corner);
 	}
-	for (const End& end : ends)
+	for (const CreaseEnd& end : ends)
 		if (Index& corner = m_corner[end.trace][end.atBack]; corner < 0)
 			findJunction(end, corner);
 }
 
 // An end that meets another crease on its way.
-void Network::findJunction(const End& end, Index& corner)
+void Network::findJunction(const CreaseEnd& end, Index& corner)
 {
 	double   nearest = std::numeric_limits<double>::infinity();
 	Vector3d best;
@@ -271,7 +140,7 @@ void Network::findJunction(const End& end, Index& corner)
 			if (distance > reach(end.vertex) || std::abs(path[v].tangent.dot(end.vertex.tangent)) > parallel)
 				continue;
 			const std::size_t fromEnd = end.atBack ? path.size() - 1 - v : v;
-			if (t == end.trace && fromEnd * m_step < minLoop * end.vertex.spacing)
+			if (t == end.trace && fromEnd * m_step < shortestLoop * end.vertex.spacing)
 				continue;
 			const Vector3d place = cornerOf({&end.vertex, &path[v]});
 			const double   move  = (place - end.vertex.position).norm();
@@ -307,7 +176,7 @@ void Network::cutAtCorners()
 				continue;
 			const auto  v    = static_cast<Index>(nearest - path.begin());
 			const auto  last = static_cast<Index>(path.size()) - 1;
-			const Index room = static_cast<Index>(behind * nearest->spacing / m_step);
+			const Index room = static_cast<Index>(spacingsBehind * nearest->spacing / m_step);
 			if (!trace.closed && v <= room) {
 				if (m_corner[t][0] < 0)
 					m_corner[t][0] = c;
@@ -352,7 +221,7 @@ bool Network::dropStubs()
 		const double length = lengthInSpacings(m_traces[t]);
 		const bool   free   = m_corner[t][0] < 0 || m_corner[t][1] < 0;
 		const bool   loop   = m_traces[t].closed || (!free && m_corner[t][0] == m_corner[t][1]);
-		if (length < (loop ? minLoop : free ? minLength : 0.0))
+		if (length < (loop ? shortestLoop : free ? minLength : 0.0))
 			continue;
 		if (kept != t)
 			m_traces[kept] = std::move(m_traces[t]);
@@ -385,7 +254,7 @@ std::vector<CreasePoint> Network::betweenCorners(Index trace) const
 	return path;
 }
 
-CreaseCurve Network::resampled(Index trace) const
+CreaseCurve Network::resampled(Index trace, double spacing) const
 {
 	std::vector<CreasePoint> path   = betweenCorners(trace);
 	const bool               closed = m_traces[trace].closed;
@@ -394,7 +263,7 @@ CreaseCurve Network::resampled(Index trace) const
 	std::vector<double> at = {0.0};
 	for (std::size_t v = 1; v < path.size(); ++v)
 		at.push_back(at.back() + (path[v].position - path[v - 1].position).norm());
-	const Index segments = std::max<Index>(closed ? 3 : 1, std::lround(at.back() / m_step));
+	const Index segments = std::max<Index>(closed ? 3 : 1, std::lround(at.back() / spacing));
 	const Index count    = closed ? segments : segments + 1;
 	CreaseCurve curve;
 	curve.closed = closed;
@@ -410,7 +279,8 @@ CreaseCurve Network::resampled(Index trace) const
 			++before;
 		const CreasePoint& a = path[before];
 		const CreasePoint& b = path[before + 1];
-		const double       t = std::clamp((s - at[before]) / std::max(at[before + 1] - at[before], 1e-300), 0.0, 1.0);
+		const double       along = (s - at[before]) / std::max(at[before + 1] - at[before], 1e-300);
+		const double       t     = std::clamp(along, 0.0, 1.0);
 		CreasePoint        vertex = t < 0.5 ? a : b;
 		vertex.position           = (1.0 - t) * a.position + t * b.position;
 		vertex.tangent            = ((1.0 - t) * a.tangent + t * b.tangent).normalized();
@@ -429,11 +299,11 @@ CreaseCurve Network::resampled(Index trace) const
 	return curve;
 }
 
-Creases Network::result() const
+Creases Network::result(double spacing) const
 {
 	Creases creases;
 	for (Index t = 0; t < static_cast<Index>(m_traces.size()); ++t)
-		creases.curves.push_back(resampled(t));
+		creases.curves.push_back(resampled(t, spacing));
 	std::stable_sort(creases.curves.begin(), creases.curves.end(), [](const auto& a, const auto& b) {
 		return a.length() > b.length();
 	});
@@ -449,11 +319,12 @@ Creases Network::result() const
 
 } // namespace
 
-Creases creaseNetwork(const CreaseTracing& tracing, std::vector<CreaseTrace> traces, double step)
+Creases creaseNetwork(
+	const CreaseTracing& tracing, std::vector<CreaseTrace> traces, double step, double spacing)
 {
-	Network network(tracing, std::move(traces), step);
+	Network network(tracing, step, std::move(traces));
 	network.build();
-	return network.result();
+	return network.result(spacing);
 }
 
 } // namespace curvature_lines

@@ -1,5 +1,5 @@
-// Traced creases as a network: joined over gaps, ended in common corners, evenly resampled. Internal to
-// creases.
+// Traced creases as a network: joined over gaps, ended in common corners, evenly resampled. Internal
+// to creases.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -8,7 +8,8 @@
 
 namespace curvature_lines {
 
-// `traces` as traced with vertices `step` apart.
-Creases creaseNetwork(const CreaseTracing& tracing, std::vector<CreaseTrace> traces, double step);
+// `traces` as traced with vertices `step` apart; those of the result are `spacing` apart.
+Creases creaseNetwork(
+	const CreaseTracing& tracing, std::vector<CreaseTrace> traces, double step, double spacing);
 
 } // namespace curvature_lines

@@ -1,4 +1,4 @@
-// Faces around each point by the normals they predict for it, and the foot of the point on their intersection.
+// Faces around each point by the normals they predict for it, and its foot on their intersection.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crease_points.h"
 
@@ -191,13 +191,19 @@ Vector3d stepOntoBoth(const FacesAround::Plane& a, const FacesAround::Plane& b)
 	return -((a.height - cosine * b.height) * a.normal + (b.height - cosine * a.height) * b.normal) / det;
 }
 
+// Where face 0 meets another one. False where they do not.
 bool meet(
-	FacesAround& around, int face, const Vector3d& position, double noise, double minAngle, CreasePoint& result)
+	FacesAround&    around,
+	int             face,
+	const Vector3d& position,
+	double          noise,
+	double          minAngle,
+	CreasePoint&    result)
 {
 	Vector3d           foot = position;
 	FacesAround::Plane own, other;
 	double             angle = 0.0;
-	// The second time with the faces continued to where they meet.
+	// From the second time on with the faces continued to where they meet.
 	for (int it = 0; it < 3; ++it) {
 		own   = around.planeAt(0, foot);
 		other = around.planeAt(face, foot);

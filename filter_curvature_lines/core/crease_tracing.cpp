@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Dense>
 
@@ -29,15 +28,18 @@ struct PolynomialAtZero {
 	Eigen::Vector2d value = Eigen::Vector2d::Zero(), slope = Eigen::Vector2d::Zero();
 };
 
-// Weighted least squares of two values over s: a parabola if there are samples on both sides, else a line.
+// Weighted least squares of two values over s: a parabola with samples on both sides, else a line.
 PolynomialAtZero fitAlong(
-	const std::vector<double>& s, const std::vector<Eigen::Vector2d>& values, const std::vector<double>& weights, double radius)
+	const std::vector<double>&          s,
+	const std::vector<Eigen::Vector2d>& values,
+	const std::vector<double>&          weights,
+	double                              radius)
 {
-	double low = 0.0, high = 0.0;
-	Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-	Eigen::Matrix<double, 3, 2> rhs = Eigen::Matrix<double, 3, 2>::Zero();
+	double                      low = 0.0, high = 0.0;
+	Eigen::Matrix3d             gram = Eigen::Matrix3d::Zero();
+	Eigen::Matrix<double, 3, 2> rhs  = Eigen::Matrix<double, 3, 2>::Zero();
 	for (std::size_t k = 0; k < s.size(); ++k) {
-		const double t = s[k] / radius;
+		const double   t = s[k] / radius;
 		const Vector3d phi(1.0, t, t * t);
 		gram += weights[k] * phi * phi.transpose();
 		rhs += weights[k] * phi * values[k].transpose();
@@ -102,11 +104,11 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 	const TangentFrame       frame(guess.tangent);
 	std::vector<double>          along, weights, distances;
 	std::vector<Eigen::Vector2d> across;
-	int left = 0, right = 0;
-	CreasePoint result = guess;
+	int                          left = 0, right = 0; // points of the two faces
+	double                       total = 0.0, angle = 0.0;
+	CreasePoint                  result = guess;
 	result.left = result.right = Vector3d::Zero();
-	result.spacing = 0.0;
-	double total = 0.0, angle = 0.0;
+	result.spacing             = 0.0;
 	for (const Index k : near) {
 		const CreasePoint& p      = m_points.points[k];
 		const bool         same   = p.tangent.dot(guess.tangent) > 0.0;
@@ -129,7 +131,7 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 	for (std::size_t k = 0; k < along.size(); ++k)
 		distances.push_back((across[k] - fit.value - along[k] * fit.slope).norm());
 	std::vector<double> sorted = distances;
-	const double scale = robustScale * medianInPlace(sorted) + 1e-12;
+	const double        scale  = robustScale * medianInPlace(sorted) + 1e-12;
 	for (std::size_t k = 0; k < along.size(); ++k) {
 		const double t = distances[k] / scale;
 		weights[k] /= (1.0 + t * t) * (1.0 + t * t);
@@ -142,7 +144,8 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 	result.spacing /= total;
 	result.angle  = angle / total;
 	result.weight = left + right;
-	if ((result.position - guess.position).norm() > width(guess) || result.tangent.dot(guess.tangent) < sameTangent || !result.position.allFinite())
+	if ((result.position - guess.position).norm() > width(guess) ||
+		result.tangent.dot(guess.tangent) < sameTangent || !result.position.allFinite())
 		return std::nullopt;
 	return result;
 }

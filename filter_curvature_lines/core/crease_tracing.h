@@ -30,12 +30,6 @@ public:
 	double width(const CreasePoint& at) const;
 
 private:
-	struct Sample {
-		Index  point;
-		double s;    // along the tangent
-		bool   left; // found from the left face
-	};
-
 	static Eigen::Matrix3Xd positionsOf(const std::vector<CreasePoint>& points);
 	// Those of the points around that belong to the same crease, the right way round.
 	std::vector<Index> sameCrease(const CreasePoint& at, double radius, double width) const;

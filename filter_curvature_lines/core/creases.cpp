@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Dense>
 
@@ -16,11 +15,14 @@ namespace curvature_lines {
 namespace {
 
 constexpr const char* progressLabel = "Finding creases";
-constexpr double      followShare   = 0.6; // of the smallest angle
-constexpr double      autoSpacing   = 0.7; // median point spacings
-constexpr Index       shapeNeighbors  = 28;
-constexpr int         shapeIterations = 3;
-constexpr double      firstGate = 0.5, lastGate = 0.25; // differences of normals
+
+constexpr double followShare     = 0.6; // of the smallest angle
+constexpr double autoSpacing     = 0.7; // median point spacings
+constexpr double finest          = 0.05;
+constexpr Index  shapeNeighbors  = 28;
+constexpr int    shapeIterations = 3;
+constexpr double firstGate       = 0.5; // differences of normals
+constexpr double lastGate        = 0.25;
 
 // The points in an order of their own, with the shape operator their normals tell: of those around that vary
 // linearly with the place, as they do on one side of a crease.
@@ -37,10 +39,10 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 	parallelFor(cloud.size(), progress, [&](Index i) {
 		const SurfaceElement&    own    = elements[i];
 		const std::vector<Index> near   = search.nearest(own.position, shapeNeighbors);
-		const double             radius = (elements[near.back()].position - own.position).norm() * 1.05;
+		const double             radius = 1.05 * (elements[near.back()].position - own.position).norm();
 		thread_local std::vector<Index> same;
-		SurfaceElement           fit = own;
-		double                   gate = firstGate;
+		SurfaceElement                  fit  = own;
+		double                          gate = firstGate;
 		for (int it = 0; it < shapeIterations; ++it, gate = std::max(lastGate, 0.5 * gate)) {
 			same.clear();
 			for (const Index j : near) {
@@ -50,7 +52,7 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 					same.push_back(j);
 			}
 			SurfaceElement start = own;
-			start.normal = fit.normal;
+			start.normal         = fit.normal;
 			const SurfaceElement next =
 				LocalSurfaceFitter::ofThisThread().fitNormals(elements, same, start, radius, 1);
 			if (!next.valid)
@@ -85,7 +87,9 @@ Creases findCreases(
 	if (cloud.size() == 0 || !(minimum.medianSpacing > 0.0))
 		return {};
 	const double             minAngle = options.minAngle * EIGEN_PI / 180.0;
-	const double             spacing  = options.spacing > 0.0 ? options.spacing : autoSpacing * minimum.medianSpacing;
+	const double             step     = autoSpacing * minimum.medianSpacing;
+	const double             spacing =
+		options.spacing > 0.0 ? std::max(options.spacing, finest * minimum.medianSpacing) : step;
 	const std::vector<Index> order    = shuffledOrder(cloud.positions);
 	PointCloud               shuffled = cloud;
 	for (std::size_t k = 0; k < order.size(); ++k) {
@@ -97,7 +101,7 @@ Creases findCreases(
 	const CreasePoints   points =
 		findCreasePoints(elements, search, followShare * minAngle, progress.sub(0.3, 0.9, progressLabel));
 	CreaseTracing tracing(points);
-	return creaseNetwork(tracing, tracing.traceAll(spacing, minAngle), spacing);
+	return creaseNetwork(tracing, tracing.traceAll(step, minAngle), step, spacing);
 }
 
 } // namespace curvature_lines

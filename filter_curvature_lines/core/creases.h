@@ -11,7 +11,7 @@ struct CreaseOptions {
 	// Between the normals of the two faces, degrees. A curve reaches it somewhere; from there it is followed
 	// down to 0.6 times this, as creases fade.
 	double minAngle = 30.0;
-	double spacing  = 0.0; // of the vertices, length; 0: 0.7 median point spacings
+	double spacing  = 0.0; // of the vertices, length, at least 0.05 median point spacings; 0: 0.7 of these
 };
 
 // Vertices in order, about evenly spaced. An open curve includes the corners it ends in; of a closed one the

@@ -17,6 +17,7 @@ const std::vector<FilterSpec>& filterTable()
 		mWeightedCurvatureFilter(),
 		projectionFilter(),
 		rayTraceFilter(),
+		sharpFeaturesFilter(),
 	};
 	return table;
 }

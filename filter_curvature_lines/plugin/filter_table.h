@@ -40,6 +40,7 @@ FilterSpec selectOutliersFilter();
 FilterSpec denoiseFilter();
 FilterSpec smoothDirectionsFilter();
 FilterSpec traceLinesFilter();
+FilterSpec sharpFeaturesFilter();
 FilterSpec quadMeshFilter();
 FilterSpec reconstructionFilter();
 FilterSpec mWeightedCurvatureFilter();

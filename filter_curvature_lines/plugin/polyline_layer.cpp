@@ -32,14 +32,15 @@ vcg::Color4b familyColor(int family)
 	return family == 1 ? vcg::Color4b(213, 94, 0, 255) : vcg::Color4b(0, 114, 178, 255);
 }
 
-void writeEdges(CMeshO& mesh, const LineNetwork& lines)
+// Line l has the vertices [offsets[l], offsets[l + 1]).
+void writeEdges(CMeshO& mesh, const std::vector<Index>& offsets, const std::vector<char>& closed)
 {
 	std::vector<std::array<Index, 2>> edges;
-	for (Index l = 0; l < lines.lines(); ++l) {
-		const Index first = lines.offsets[l], last = lines.offsets[l + 1] - 1;
+	for (std::size_t l = 0; l < closed.size(); ++l) {
+		const Index first = offsets[l], last = offsets[l + 1] - 1;
 		for (Index v = first; v < last; ++v)
 			edges.push_back({v, v + 1});
-		if (lines.closed[l] && last - first >= 2)
+		if (closed[l] && last - first >= 2)
 			edges.push_back({last, first});
 	}
 	auto edge = Allocator::AddEdges(mesh, edges.size());
@@ -135,8 +136,36 @@ void writeLines(
 			id[v]            = Scalarm(l);
 			family[v]        = Scalarm(lines.family[l]);
 		}
-	writeEdges(mesh, lines);
+	writeEdges(mesh, lines.offsets, lines.closed);
 	Allocator::GetPerMeshAttribute<int>(mesh, sourceAttribute)() = sourceLayer;
+	vcg::tri::UpdateBounding<CMeshO>::Box(mesh);
+}
+
+void writeCreases(MeshModel& layer, const Creases& creases, const PreparedCloud& frame)
+{
+	layer.updateDataMask(MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR);
+	std::vector<Index> offsets = {0};
+	std::vector<char>  closed;
+	for (const CreaseCurve& curve : creases.curves) {
+		offsets.push_back(offsets.back() + curve.size());
+		closed.push_back(curve.closed);
+	}
+	CMeshO& mesh = layer.cm;
+	Allocator::AddVertices(mesh, offsets.back());
+	auto id = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_id");
+	for (std::size_t l = 0; l < closed.size(); ++l) {
+		const CreaseCurve& curve = creases.curves[l];
+		for (Index k = 0; k < curve.size(); ++k) {
+			const Index v    = offsets[l] + k;
+			CVertexO& vertex = mesh.vert[v];
+			vertex.P()       = toPoint(frame.toModel(curve.positions.col(k)));
+			vertex.N()       = toPoint((curve.left.col(k) + curve.right.col(k)).normalized());
+			vertex.Q()       = Scalarm(curve.angle[k] * 180.0 / EIGEN_PI);
+			vertex.C()       = familyColor(curve.angle[k] > 0.0 ? 1 : 2);
+			id[v]            = Scalarm(l);
+		}
+	}
+	writeEdges(mesh, offsets, closed);
 	vcg::tri::UpdateBounding<CMeshO>::Box(mesh);
 }
 

@@ -23,6 +23,7 @@ _FILTERS = {
     "apply_coord_point_cloud_robust_denoising": "Moves the points onto the surface and corrects the normals",
     "apply_curvature_direction_smoothing_per_vertex": "Smooths the principal directions where they are uncertain",
     "generate_curvature_lines": "Traces the lines of curvature as a new polyline layer",
+    "generate_sharp_feature_lines": "Finds the sharp edges of the surface as a new polyline layer",
     "generate_curvature_aligned_quad_mesh": "Builds a quad-dominant mesh from a layer of curvature lines",
     "generate_surface_reconstruction_curvature_aligned": "From a cloud to a curvature-aligned quad mesh, in one step",
 }

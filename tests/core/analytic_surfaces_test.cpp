@@ -329,6 +329,10 @@ TEST(AnalyticSurfaces, RimDistanceIsZeroOnTheRimAndInfiniteWithoutOne)
 	EXPECT_NEAR(surface("bent_sheet").rimDistance({0.5, 0.0, -0.5}), 0.0, 1e-12);
 	EXPECT_TRUE(std::isinf(surface("torus").rimDistance({1.4, 0.0, 0.0})));
 	EXPECT_NEAR(surface("cube").featureDistance({0.5, 0.3, 0.1}), 0.2, 1e-12);
+	EXPECT_NEAR(surface("capped_cylinder").featureDistance({0.5, 0.0, 0.3}), 0.2, 1e-12);
+	EXPECT_NEAR(surface("capped_cylinder").featureDistance({0.3, 0.0, 0.5}), 0.2, 1e-12);
+	EXPECT_NEAR(surface("l_block").featureDistance({0.0, 0.1, 0.0}), 0.1, 1e-12);
+	EXPECT_NEAR(surface("l_block").featureDistance({-0.1, -0.1, 0.25}), std::sqrt(0.02), 1e-12);
 	EXPECT_NEAR(surface("capsule").featureDistance({0.5, 0.0, 0.2}), 0.3, 1e-12);
 }
 

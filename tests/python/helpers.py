@@ -17,12 +17,13 @@ OUTLIERS = "compute_selection_point_cloud_outliers_by_curvature"
 DENOISE = "apply_coord_point_cloud_robust_denoising"
 SMOOTH = "apply_curvature_direction_smoothing_per_vertex"
 TRACE = "generate_curvature_lines"
+FEATURES = "generate_sharp_feature_lines"
 MESH = "generate_curvature_aligned_quad_mesh"
 PIPELINE = "generate_surface_reconstruction_curvature_aligned"
 M_WEIGHTED = "compute_curvature_m_weighted_per_vertex"
 PROJECT = "compute_curvature_driven_projection"
 RAY_TRACE = "save_ray_traced_point_set_image"
-ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE, M_WEIGHTED]
+ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE, M_WEIGHTED, FEATURES]
 
 OK, BOUNDARY, TOO_FEW, UMBILIC, ISOLATED, INVALID = range(6)
 ATTRIBUTES = ["curv_k1", "curv_k2", "curv_confidence", "curv_error", "curv_scale", "curv_feature", "curv_status"]

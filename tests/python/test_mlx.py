@@ -8,6 +8,7 @@ import pytest
 from helpers import (
     CURVATURE,
     DENOISE,
+    FEATURES,
     M_WEIGHTED,
     MESH,
     OUTLIERS,
@@ -31,6 +32,7 @@ CHAINS = {
         (DENOISE, {"method": "Paper", "iterations": 5, "energy": "Squared", "neighbors": "Nearest"})
     ],
     "lines_and_mesh": [(SMOOTH, {"alpha": 0.7}), (TRACE, {"target_vertices": 120}), (MESH, {"triangulate": True})],
+    "sharp_features": [(FEATURES, {"min_angle": 40.0, "spacing": 0.03, "denoise": False})],
     "pipeline": [(PIPELINE, {"target_vertices": 80, "denoise": False, "reject_outliers": False, "keep_intermediate_layers": True})],
 }
 
@@ -78,6 +80,7 @@ NAMES = {
     TRACE: "Trace Lines of Curvature",
     MESH: "Build Curvature-Aligned Quad Mesh",
     PIPELINE: "Surface Reconstruction: Curvature-Aligned Quads",
+    FEATURES: "Extract Sharp Feature Lines",
     M_WEIGHTED: "M-Weighted Curvature (Euler Least Squares)",
 }
 PARAMETERS = {
@@ -91,6 +94,7 @@ PARAMETERS = {
     MESH: {"triangulate": False, "split_concave": True, "close_holes": False},
     PIPELINE: {"target_vertices": 0, "triangulate": False, "close_holes": False, "reject_outliers": True,
                "denoise": True, "smooth_directions": True, "estimate_normals": 0, "scale_mode": 0, "keep_intermediate_layers": False},
+    FEATURES: {"min_angle": 30.0, "spacing": 0.0, "denoise": True},
     M_WEIGHTED: {"bandwidth": 2.5, "exponent": 2, "neighbors": 60, "weighting": 0, "scalar": 0, "colorize": True, "umbilic_ratio": 0.95},
 }
 

@@ -1,0 +1,145 @@
+// Extract Sharp Feature Lines: core/creases on a denoised copy of a layer's points.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "filter_table.h"
+#include "help_text.h"
+#include "polyline_layer.h"
+
+#include "core/robust_denoising.h"
+
+namespace curvature_lines {
+
+namespace {
+
+RichParameterList parameters(const MeshDocument&)
+{
+	const CreaseOptions defaults;
+	RichParameterList   list;
+	list.addParam(RichFloat(
+		"min_angle",
+		Scalarm(defaults.minAngle),
+		"Smallest angle",
+		"A line is kept if somewhere the normals of its two faces differ by this many degrees (5 to "
+		"150); from there it is followed until six tenths of it are left. Lower values find softer "
+		"edges, and more that noise makes up."));
+	list.addParam(RichFloat(
+		"spacing",
+		Scalarm(defaults.spacing),
+		"Vertex spacing",
+		"Distance between the vertices of the lines, in the layer's units; 0 = automatic, 0.7 times "
+		"the point spacing."));
+	list.addParam(RichBool(
+		"denoise",
+		true,
+		"Denoise first",
+		"Search a denoised copy of the points (as <i>Denoise Point Cloud by Robust Curvature</i> "
+		"makes it). Without, the points and their normals are taken as they are: for clouds "
+		"denoised "
+		"before, and exact ones.",
+		true));
+	return list;
+}
+
+CreaseOptions creaseOptions(const Parameters& parameters, double diagonal)
+{
+	CreaseOptions options;
+	options.minAngle = parameters.real("min_angle", 5.0, 150.0);
+	options.spacing  = parameters.length("spacing") / diagonal;
+	return options;
+}
+
+FilterResults apply(const FilterContext& context)
+{
+	const Parameters& parameters = context.parameters;
+	creaseOptions(parameters, 1.0); // complain before the long part
+
+	MeshModel&        cloudLayer = currentLayer(context.document);
+	const LayerPoints points     = readOrientedPoints(cloudLayer);
+	Stopwatch         total, stage;
+	FilterResults     results;
+	PreparedCloud     prepared = prepareCloud(points.positions, points.normals);
+	if (parameters.flag("denoise")) {
+		RobustDenoisingResult denoised =
+			denoiseRobustly(prepared.cloud, {}, context.progress.sub(0.0, 0.8, "Denoising"));
+		prepared.cloud.positions = std::move(denoised.positions);
+		prepared.cloud.normals   = std::move(denoised.normals);
+		results.seconds("denoising", stage.lap());
+	}
+	const NeighborSearch       search(prepared.cloud.positions);
+	const MinimumNeighborhoods minimum = minimumNeighborhoods(
+		prepared.cloud, search, {}, context.progress.sub(0.8, 0.85, "Finding neighborhoods"));
+	const Creases creases = findCreases(
+		prepared.cloud,
+		minimum,
+		creaseOptions(parameters, prepared.diagonal),
+		context.progress.sub(0.85, 1.0, "Finding creases"));
+	results.seconds("creases", stage.lap());
+
+	double length   = 0.0;
+	Index  closed   = 0, concave = 0;
+	for (const CreaseCurve& curve : creases.curves) {
+		length += prepared.diagonal * curve.length();
+		closed += curve.closed;
+		concave += curve.angle.sum() < 0.0;
+	}
+	results.count("vertices", 0);
+	results.count("edges", 0);
+	if (!creases.curves.empty()) { // smooth surfaces are nothing wrong
+		NewLayers  layers(context.document);
+		MeshModel& layer = layers.add("sharp features", cloudLayer);
+		writeCreases(layer, creases, prepared);
+		layers.keep(layer);
+		results.count("vertices", layer.cm.vn);
+		results.count("edges", layer.cm.en);
+	}
+	results.count("points", points.size());
+	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
+	results.count("curves", static_cast<Index>(creases.curves.size()));
+	results.count("closed_curves", closed);
+	results.count("concave_curves", concave);
+	results.count("corners", static_cast<Index>(creases.corners.size()));
+	results.real("length", length);
+	results.seconds("total", total.seconds());
+	return results;
+}
+
+} // namespace
+
+FilterSpec sharpFeaturesFilter()
+{
+	return {
+		"Extract Sharp Feature Lines",
+		"generate_sharp_feature_lines",
+		"Finds the sharp edges of the surface a point cloud samples, without a mesh: lines where two "
+		"faces meet at an angle, and the corners where lines end together. The faces on both sides "
+		"are "
+		"continued to where they intersect, so that lines are more exact than the points beside "
+		"them. "
+		"The rim of an open surface is no such line, nor is a tight but smooth bend of several "
+		"point "
+		"spacings." +
+			helpInput +
+			"<br><br><b>Writes</b> a new layer <i>sharp features</i> of vertices and edges, and makes "
+			"it "
+			"current, unless there is no sharp edge: normals (the mean of the two faces'), quality "
+			"(the "
+			"angle between the two faces' normals in degrees, positive where convex, negative where "
+			"concave), colour (orange convex, blue concave) and the vertex attribute "
+			"<tt>line_id</tt>; "
+			"lines that end in the same corner have a vertex there each. The cloud itself stays as "
+			"it "
+			"is. Save it as OBJ: PLY drops edges."
+			"<br><br><b>Returns</b> the numbers of <tt>curves</tt>, <tt>closed_curves</tt>, "
+			"<tt>concave_curves</tt> and <tt>corners</tt>, and the <tt>length</tt> of all lines."
+			"<br><br>Outliers should be removed before (<i>Select Outliers by Robust Curvature</i>)." +
+			helpConventions + helpReference,
+		FilterPlugin::PointSet + FilterPlugin::MeshCreation,
+		FilterPlugin::SINGLE_MESH,
+		MeshModel::MM_NONE,
+		MeshModel::MM_NONE,
+		parameters,
+		apply};
+}
+
+} // namespace curvature_lines

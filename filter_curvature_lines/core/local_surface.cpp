@@ -77,6 +77,22 @@ bool LocalSurfaceFitter::planeStart(
 	return true;
 }
 
+bool LocalSurfaceFitter::robustFactors(double rms)
+{
+	if (!(*std::max_element(m_residuals.begin(), m_residuals.end()) > suspicious * rms))
+		return false;
+	m_sorted    = m_residuals;
+	auto middle = m_sorted.begin() + m_sorted.size() / 2;
+	std::nth_element(m_sorted.begin(), middle, m_sorted.end());
+	const double sigma = madFactor * *middle;
+	m_factors.clear();
+	for (const double residual : m_residuals) {
+		const double t = residual / (robustScale * sigma + 1e-12);
+		m_factors.push_back(residual > cut * sigma + 1e-12 ? 0.0 : 1.0 / ((1.0 + t * t) * (1.0 + t * t)));
+	}
+	return true;
+}
+
 template<int Degree>
 bool LocalSurfaceFitter::heightStep(
 	const PointCloud&         cloud,
@@ -107,24 +123,13 @@ bool LocalSurfaceFitter::heightStep(
 		return false;
 
 	if (lookForOutliers) {
-		const int samples = m_heights.size();
-		m_residuals.resize(samples);
-		double largest = 0.0;
-		for (int s = 0; s < samples; ++s) {
-			m_residuals[s] = std::abs(m_heights.value[0][s] - fit(m_heights.x[s], m_heights.y[s])[0]);
-			largest        = std::max(largest, m_residuals[s]);
-		}
-		const double rms = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
-		if (largest > suspicious * rms) {
-			m_sorted    = m_residuals;
-			auto middle = m_sorted.begin() + samples / 2;
-			std::nth_element(m_sorted.begin(), middle, m_sorted.end());
-			const double sigma = madFactor * *middle;
-			for (int s = 0; s < samples; ++s) {
-				const double t = m_residuals[s] / (robustScale * sigma + 1e-12);
-				const double g = m_residuals[s] > cut * sigma + 1e-12 ? 0.0 : 1.0 / ((1.0 + t * t) * (1.0 + t * t));
-				m_heights.weight[s] *= g / m_robust[m_entries[s]];
-				m_robust[m_entries[s]] = g;
+		m_residuals.clear();
+		for (int s = 0; s < m_heights.size(); ++s)
+			m_residuals.push_back(std::abs(m_heights.value[0][s] - fit(m_heights.x[s], m_heights.y[s])[0]));
+		if (robustFactors(std::sqrt(fit.squaredResidual / fit.sumOfWeights))) {
+			for (int s = 0; s < m_heights.size(); ++s) {
+				m_heights.weight[s] *= m_factors[s] / m_robust[m_entries[s]];
+				m_robust[m_entries[s]] = m_factors[s];
 			}
 			fit = fitPolynomial<Degree, 1>(m_heights);
 			if (!fit.valid)
@@ -140,6 +145,7 @@ bool LocalSurfaceFitter::heightStep(
 	hessian << 2.0 * c[3], c[4], c[4], 2.0 * c[5];
 	const double freedom = double(m_heights.size() - monomialCount(Degree)) / m_heights.size();
 	element.samples      = m_heights.size();
+	element.support      = fit.sumOfWeights / m_heights.size();
 	element.residual     = radius * std::sqrt(fit.squaredResidual / (freedom * fit.sumOfWeights));
 	element.offset   = std::hypot(fit.gram(0, 1), fit.gram(0, 2)) / fit.sumOfWeights;
 	element.position += c[0] * radius * frame.n;
@@ -179,6 +185,7 @@ bool LocalSurfaceFitter::normalStep(
 	const std::vector<Index>&          near,
 	const Eigen::Vector3d&             center,
 	double                             radius,
+	bool                               lookForOutliers,
 	SurfaceElement&                    element)
 {
 	const TangentFrame frame(element.normal);
@@ -199,9 +206,25 @@ bool LocalSurfaceFitter::normalStep(
 	}
 	if (m_normals.size() < monomialCount(Degree) + spareSamples)
 		return false;
-	const auto fit = fitPolynomial<Degree, 3>(m_normals);
+	auto fit = fitPolynomial<Degree, 3>(m_normals);
 	if (!fit.valid)
 		return false;
+	if (lookForOutliers) {
+		m_residuals.clear();
+		for (int s = 0; s < m_normals.size(); ++s) {
+			Eigen::Vector3d residual = fit(m_normals.x[s], m_normals.y[s]);
+			for (int c = 0; c < 3; ++c)
+				residual[c] -= m_normals.value[c][s];
+			m_residuals.push_back(residual.norm());
+		}
+		if (robustFactors(std::sqrt(fit.squaredResidual / fit.sumOfWeights))) {
+			for (int s = 0; s < m_normals.size(); ++s)
+				m_normals.weight[s] *= m_factors[s];
+			fit = fitPolynomial<Degree, 3>(m_normals);
+			if (!fit.valid)
+				return false;
+		}
+	}
 	const auto&     c = fit.coefficients;
 	Eigen::Matrix2d x;
 	x << c(1, 0), c(2, 0), c(1, 1), c(2, 1);
@@ -221,14 +244,18 @@ SurfaceElement LocalSurfaceFitter::fitNormals(
 	const std::vector<Index>&          near,
 	const SurfaceElement&              start,
 	double                             radius,
-	int                                degree)
+	int                                degree,
+	bool                               robust)
 {
 	SurfaceElement element = start;
 	element.valid          = true;
-	for (int it = 0; it < 2 && element.valid; ++it)
-		element.valid = degree == 1 ? normalStep<1>(elements, near, start.position, radius, element) :
-						degree == 2 ? normalStep<2>(elements, near, start.position, radius, element) :
-									  normalStep<3>(elements, near, start.position, radius, element);
+	for (int it = 0; it < 2 && element.valid; ++it) {
+		const bool look = robust && it > 0;
+		element.valid =
+			degree == 1 ? normalStep<1>(elements, near, start.position, radius, look, element) :
+			degree == 2 ? normalStep<2>(elements, near, start.position, radius, look, element) :
+						  normalStep<3>(elements, near, start.position, radius, look, element);
+	}
 	return element;
 }
 

@@ -16,6 +16,7 @@ struct SurfaceElement {
 	Eigen::Matrix3d shape    = Eigen::Matrix3d::Zero();  // 1/length
 	double          residual = 0.0; // RMS of the heights that were fitted, length
 	double          offset   = 0.0; // distance of the weighted mean of the points, in radii: 0 inside, large at a rim
+	double          support  = 0.0; // mean weight of the points: 1/3 on a surface, less off it
 	Index           samples  = 0;   // points that were fitted
 	bool            valid    = false;
 };
@@ -44,13 +45,15 @@ public:
 		int                       iterations);
 
 	// The normals of the elements `near` `start` (all within `radius`) as a polynomial of `degree` 1 to 3
-	// in its tangent plane; its linear part is the shape operator. residual and offset are those of `start`.
+	// in its tangent plane; its linear part is the shape operator. Elements far off it count less if `robust`.
+	// residual and offset are those of `start`.
 	SurfaceElement fitNormals(
 		const std::vector<SurfaceElement>& elements,
 		const std::vector<Index>&          near,
 		const SurfaceElement&              start,
 		double                             radius,
-		int                                degree = 3);
+		int                                degree,
+		bool                               robust);
 
 	static LocalSurfaceFitter& ofThisThread();
 
@@ -61,6 +64,7 @@ private:
 		const std::vector<Index>&          near,
 		const Eigen::Vector3d&             center,
 		double                             radius,
+		bool                               lookForOutliers,
 		SurfaceElement&                    element);
 	template<int Degree>
 	bool heightStep(
@@ -69,6 +73,8 @@ private:
 		double                    radius,
 		bool                      lookForOutliers,
 		SurfaceElement&           element);
+	// Geman-McClure weights of m_residuals into m_factors, if there are suspicious ones.
+	bool robustFactors(double rms);
 	bool planeStart(
 		const PointCloud&         cloud,
 		const std::vector<Index>& near,
@@ -79,7 +85,7 @@ private:
 	LocalSamples<3>     m_normals;
 	std::vector<double> m_robust;  // per entry of `near`, from the step before
 	std::vector<Index>  m_entries; // of `near`, per sample
-	std::vector<double> m_residuals, m_sorted;
+	std::vector<double> m_residuals, m_sorted, m_factors;
 };
 
 } // namespace curvature_lines

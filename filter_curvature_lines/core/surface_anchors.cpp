@@ -33,6 +33,10 @@ constexpr double faceReach    = 2.2;                 // radii
 constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
 constexpr double outlierRatio = 4.5;
 constexpr double outlierFloor = 0.02; // radii
+constexpr double fullSupport  = 1.0 / 3.0; // mean of the kernel over a disc
+constexpr double leastSupport = 0.2;
+constexpr double supportScatter = 1.5; // five standard deviations of the mean, of one sample
+constexpr double spoiltRatio  = 2.0; // residual over the usual one, of a fit that outliers spoilt
 constexpr double smallestJump = 0.35;
 
 std::vector<Index>& scratchList()
@@ -85,7 +89,10 @@ std::vector<Index> thin(const PointSample& sample, double distance)
 
 bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, double radius)
 {
-	return (element.position - position).norm() > outlierRatio * element.residual + outlierFloor * radius;
+	// The ball of a point off the surface holds points near its rim only, a chance void has some inside.
+	const double scatter = supportScatter / std::sqrt(element.samples + 1.0);
+	return element.support < std::min(leastSupport, fullSupport - scatter) ||
+		(element.position - position).norm() > outlierRatio * element.residual + outlierFloor * radius;
 }
 
 SurfaceElement surfaceAt(
@@ -142,6 +149,7 @@ void SurfaceAnchors::fitAll(
 {
 	const std::vector<Index>    kept = thin(sample, anchorSpacing * m_scale.height.radius);
 	std::vector<SurfaceElement> elements(kept.size());
+	std::vector<char>           outlier(kept.size());
 	parallelFor(static_cast<Index>(kept.size()), {}, [&](Index a) {
 		const Eigen::Vector3d position = sample.cloud.positions.col(kept[a]);
 		if (zone.contains(position))
@@ -152,9 +160,11 @@ void SurfaceAnchors::fitAll(
 				sample.cloud.normals.col(kept[a]),
 				m_scale.height,
 				anchorIterations);
-		if (isOutlier(elements[a], position, m_scale.height.radius))
+		outlier[a] = elements[a].valid && isOutlier(elements[a], position, m_scale.height.radius);
+		if (outlier[a])
 			elements[a].valid = false;
 	});
+	m_hasOutliers = std::count(outlier.begin(), outlier.end(), 1) > 0;
 	for (const SurfaceElement& element : elements)
 		if (element.valid)
 			m_elements.push_back(element);
@@ -207,6 +217,11 @@ void SurfaceAnchors::flagMisfits()
 		if (agree >= 3 && agree >= minAgreement * near.size()) {
 			m_misfit[a] = 1;
 			m_hasEdges  = true;
+		}
+		else if (
+			m_elements[a].residual >
+			spoiltRatio * m_scale.usualResidual + misfitFloor * m_scale.height.radius) {
+			m_elements[a].valid = false;
 		}
 	}
 }
@@ -517,7 +532,7 @@ SurfaceElement SurfaceAnchors::normalField(const SurfaceElement& start) const
 		degree           = off > 0.25 ? 1 : off > 0.12 ? 2 : 3;
 	}
 	return LocalSurfaceFitter::ofThisThread().fitNormals(
-		m_elements, near, start, m_scale.normalRadius, degree);
+		m_elements, near, start, m_scale.normalRadius, degree, m_hasOutliers);
 }
 
 } // namespace curvature_lines

@@ -153,6 +153,7 @@ private:
 	std::unique_ptr<NeighborSearch> m_search;       // over m_positions
 	std::unique_ptr<NeighborSearch> m_originSearch; // over m_origins
 	bool                            m_hasEdges = false;
+	bool                            m_hasOutliers = false; // among the points anchors were tried at
 	double                          m_noise    = 0.0;
 	double                          m_jump     = 0.35;
 	double                          m_linkLength = 0.0;

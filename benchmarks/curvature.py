@@ -23,7 +23,7 @@ from measures import analytic_surfaces
 from peers.apss import DEFAULT_SCALE, apss
 from peers.estimate import Estimate
 from peers.jets import jets
-from peers.jets import version as cgal_version
+from peers.programs import cgal_version
 
 PLANE_FIT_NEIGHBORS = 16
 RIM_MARGIN = 0.2

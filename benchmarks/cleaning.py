@@ -21,6 +21,7 @@ from cleaning_clouds import (
     SMOOTH_NORMALS_NEIGHBORS,
     Cloud,
     denoising_figures,
+    grooved,
     part_selection_figures,
     quarters_alone,
     ratio_figures,
@@ -236,7 +237,14 @@ def clean(settings: Settings) -> str:
         for noise, label in ((0.0, "clean"), (0.0025, "0.25 %"))
         for surface in ("torus", "cube", "helicoid")
     ]
-    return compare(cases, settings, our_selection, selecting_peers, selection_figures)
+    cases += [
+        Case(f"sheet 20 000, groove of {width:g} spacings", grooved(20000, width), targets, quick=width == 3.0)
+        for width in (3.0, 6.0)
+    ]
+    return (
+        "Groove: a Gaussian valley, as deep as its half width at 1/e, that width in spacings.\n\n"
+        + compare(cases, settings, our_selection, selecting_peers, selection_figures)
+    )
 
 
 def denoised(ratio: tuple[float, float], **more: tuple[float, float]) -> dict[str, Target]:
@@ -447,11 +455,18 @@ def main() -> None:
         if name not in EXPERIMENTS:
             parser.error(f"no experiment is called {name}")
     settings = Settings(quick=given.quick, peers=not given.without_peers, data=given.data)
-    chosen = [EXPERIMENTS[name] for name in given.experiments or EXPERIMENTS]
-    sections = [introduction(settings), *(f"## {title}\n\n{run(settings)}" for title, run in chosen)]
-    if given.experiments or given.quick:
-        print("\n".join(sections))
-    else:
+    to_screen = bool(given.experiments) or given.quick
+    sections = []
+
+    def add(section: str) -> None:
+        sections.append(section)
+        if to_screen:
+            print(section, flush=True)
+
+    add(introduction(settings))
+    for title, run in (EXPERIMENTS[name] for name in given.experiments or EXPERIMENTS):
+        add(f"## {title}\n\n{run(settings)}")
+    if not to_screen:
         options = {" --data FOLDER": given.data, " --without-peers": given.without_peers}
         command = "cleaning.py" + "".join(option for option, used in options.items() if used)
         measures.write_result("cleaning", command, "Cleaning", "\n".join(sections))

@@ -105,6 +105,35 @@ def rim_distance_of(surface: str) -> Callable[[np.ndarray], np.ndarray]:
     return lambda points: analytic_surfaces.project(surface, points)["rim_distance"]
 
 
+def grooved(points: int, width: float) -> Callable[[int], Cloud]:
+    """A sheet of side 1 with a valley of Gaussian profile: depth and half width at 1/e are `width` spacings."""
+    size = width / np.sqrt(points)
+
+    def profile(x: np.ndarray) -> np.ndarray:
+        return -size * np.exp(-(((x - 0.5) / size) ** 2))
+
+    def slope(x: np.ndarray) -> np.ndarray:
+        return -2.0 * (x - 0.5) / size**2 * profile(x)
+
+    def distance(moved: np.ndarray) -> np.ndarray:
+        return (moved[:, 2] - profile(moved[:, 0])) / np.hypot(1.0, slope(moved[:, 0]))
+
+    def make(seed: int) -> Cloud:
+        x, y = np.random.default_rng(seed).random((2, points))
+        outward = np.column_stack([-slope(x), np.zeros(points), np.ones(points)])
+        groove = np.abs(x - 0.5) < 2.0 * size
+        return Cloud(
+            np.column_stack([x, y, profile(x)]),
+            outward / np.linalg.norm(outward, axis=1, keepdims=True),
+            np.zeros(points, bool),
+            np.full(points, SMALLEST_NOISE_UNIT),
+            distance,
+            {"groove": groove, "elsewhere": ~groove},
+        )
+
+    return make
+
+
 UNEVEN_SECTORS = 4
 UNEVEN_MARGIN = 0.25  # radians at each end of a sector that are handed over but not judged
 

@@ -5,25 +5,21 @@
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import sys
-import tempfile
-import time
-from collections import defaultdict
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
-from statistics import median
 
 import numpy as np
 
 import measures
+from comparison import Figures, Outcome, Target, best_cell, number, verdict
+from fresh_process import cost_of
 from measures import analytic_surfaces
 from peers.apss import DEFAULT_SCALE, apss
 from peers.estimate import Estimate
 from peers.jets import jets
-from peers.jets import version as cgal_version
+from peers.programs import cgal_version
 
 PLANE_FIT_NEIGHBORS = 16
 RIM_MARGIN = 0.2
@@ -35,9 +31,9 @@ JET_SETTINGS = [(degree, neighbors) for degree in (2, 4) for neighbors in (20, 5
 APSS_SCALES = (DEFAULT_SCALE, 12)
 TIMED_RUNS = 3
 LARGE_SCAN = "dragon_vrip.ply"
+CURVATURE = "compute_curvature_robust_per_vertex"
 
 Truth = dict[str, np.ndarray]
-Figures = dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -70,7 +66,7 @@ class Cloud:
 class Case:
     label: str
     make: Callable[[int], Cloud]  # of a seed
-    targets: dict[str, tuple[float, float]]  # figure -> must, aim
+    targets: dict[str, Target]  # of figures
     quick: bool = False  # also in a quick run
     one_seed: bool = False
 
@@ -194,60 +190,8 @@ def methods_of(settings: Settings) -> Methods:
     return methods
 
 
-def number(value: float) -> str:
-    return "–" if np.isnan(value) else f"{value:.3g}"
-
-
-def verdict(value: float, target: tuple[float, float] | None) -> list[str]:
-    """Must, aim, and which of them is met."""
-    if target is None:
-        return ["–", "–", ""]
-    must, aim = target
-    return [number(must), number(aim), "aim" if value <= aim else "must" if value <= must else "**missed**"]
-
-
 COMPARISON_HEADER = ["cloud", "figure", "ours", "worst seed", "must", "aim", "met"]
 PEER_HEADER = [jet_name(JET_USUAL), "best CGAL jet (degree, k)", *(apss_name(scale) for scale in APSS_SCALES)]
-
-
-class Outcome:
-    """Figures of one method on the clouds of all seeds."""
-
-    def __init__(self) -> None:
-        self._figures: dict[str, list[float]] = defaultdict(list)
-        self._runs = self._crashes = 0
-
-    def add(self, figures: Figures | None) -> None:
-        self._runs += 1
-        if figures is None:
-            self._crashes += 1
-            return
-        for name, value in figures.items():
-            self._figures[name].append(value)
-
-    def names(self) -> list[str]:
-        return list(self._figures)
-
-    def median(self, name: str) -> float:
-        return median(self._figures[name]) if self._figures[name] else np.nan
-
-    def worst(self, name: str) -> float:
-        return max(self._figures[name])
-
-    def cell(self, name: str) -> str:
-        if self._crashes == self._runs:
-            return "crash"
-        crashed = f" (crash: {self._crashes} of {self._runs} seeds)" if self._crashes else ""
-        return number(self.median(name)) + crashed
-
-
-def best_jet_cell(outcomes: dict[str, Outcome], name: str) -> str:
-    medians = {setting: outcomes[jet_name(setting)].median(name) for setting in JET_SETTINGS}
-    known = {setting: value for setting, value in medians.items() if not np.isnan(value)}
-    if not known:
-        return "–"
-    degree, neighbors = best = min(known, key=known.__getitem__)
-    return f"{number(known[best])} ({degree}, {neighbors})"
 
 
 def compare(
@@ -273,7 +217,8 @@ def compare(
             row += verdict(ours.median(name), case.targets.get(name))
             if settings.peers:
                 row.append(outcomes[jet_name(JET_USUAL)].cell(name))
-                row.append(best_jet_cell(outcomes, name))
+                jet_outcomes = {f"{degree}, {k}": outcomes[jet_name((degree, k))] for degree, k in JET_SETTINGS}
+                row.append(best_cell(jet_outcomes, name))
                 row += [outcomes[apss_name(scale)].cell(name) for scale in APSS_SCALES]
             rows.append(row)
     return measures.markdown_table(COMPARISON_HEADER + (PEER_HEADER if settings.peers else []), rows)
@@ -281,11 +226,11 @@ def compare(
 
 def torus(settings: Settings) -> str:
     targets = {
-        0.0: {"H": (0.001, 0.0005)},
-        0.0025: {"H": (0.022, 0.015)},
-        0.005: {"H": (0.033, 0.02), "direction": (0.016, 0.010)},
-        0.01: {"H": (0.046, 0.03), "direction": (0.025, 0.018)},
-        0.02: {"H": (0.082, 0.06)},
+        0.0: {"H": Target(0.001, 0.0005)},
+        0.0025: {"H": Target(0.022, 0.015)},
+        0.005: {"H": Target(0.033, 0.02), "direction": Target(0.016, 0.010)},
+        0.01: {"H": Target(0.046, 0.03), "direction": Target(0.025, 0.018)},
+        0.02: {"H": Target(0.082, 0.06)},
     }
     cases = [
         Case(f"torus 20 000, {100 * noise:g} %", sampled("torus", 20000, noise), target, quick=noise == 0.005)
@@ -296,13 +241,13 @@ def torus(settings: Settings) -> str:
 
 def surfaces(settings: Settings) -> str:
     cases = [
-        Case("ellipsoid 20 000, 0.5 %", sampled("ellipsoid", 20000, 0.005), {"H": (0.037, 0.03)}),
-        Case("sphere 20 000, 0.5 %", sampled("sphere", 20000, 0.005), {"H": (0.009, 0.006)}),
-        Case("cylinder 20 000, 0.5 %, inner", sampled("cylinder", 20000, 0.005), {"H": (0.02, 0.015)}),
-        Case("helicoid 1730, 0.5 %, inner", sampled("helicoid", 1730, 0.005), {"H": (0.045, 0.03)}, quick=True),
-        Case("torus 1600, clean", sampled("torus", 1600), {"H": (0.02, 0.01)}, quick=True),
-        Case("torus 1600, 0.5 %", sampled("torus", 1600, 0.005), {"H": (0.07, 0.06)}),
-        Case("torus 200 000, 0.5 %", sampled("torus", 200000, 0.005), {"H": (0.022, 0.015)}, one_seed=True),
+        Case("ellipsoid 20 000, 0.5 %", sampled("ellipsoid", 20000, 0.005), {"H": Target(0.037, 0.03)}),
+        Case("sphere 20 000, 0.5 %", sampled("sphere", 20000, 0.005), {"H": Target(0.009, 0.006)}),
+        Case("cylinder 20 000, 0.5 %, inner", sampled("cylinder", 20000, 0.005), {"H": Target(0.02, 0.015)}),
+        Case("helicoid 1730, 0.5 %, inner", sampled("helicoid", 1730, 0.005), {"H": Target(0.045, 0.03)}, quick=True),
+        Case("torus 1600, clean", sampled("torus", 1600), {"H": Target(0.02, 0.01)}, quick=True),
+        Case("torus 1600, 0.5 %", sampled("torus", 1600, 0.005), {"H": Target(0.07, 0.06)}),
+        Case("torus 200 000, 0.5 %", sampled("torus", 200000, 0.005), {"H": Target(0.022, 0.015)}, one_seed=True),
     ]
     return compare(cases, settings, figures_of)
 
@@ -330,7 +275,7 @@ def two_tori_of(points: int, small_share: float) -> Callable[[int], Cloud]:
 
 
 def two_tori(settings: Settings) -> str:
-    points, targets = 40000, {"large, H": (0.04, 0.025), "small, H": (0.15, 0.10)}
+    points, targets = 40000, {"large, H": Target(0.04, 0.025), "small, H": Target(0.15, 0.10)}
     cases = [
         Case("points shared equally", two_tori_of(points, 1 / 2), targets),
         Case("points by area", two_tori_of(points, 1 / 26), targets, quick=True),
@@ -343,8 +288,8 @@ def two_tori(settings: Settings) -> str:
 
 def outliers(settings: Settings) -> str:
     cases = [
-        Case("1 % outliers", sampled("torus", 20000, 0.0025, 0.01), {"H": (0.03, 0.022)}),
-        Case("5 % outliers", sampled("torus", 20000, 0.0025, 0.05), {"H": (0.05, 0.022)}, quick=True),
+        Case("1 % outliers", sampled("torus", 20000, 0.0025, 0.01), {"H": Target(0.03, 0.022)}),
+        Case("5 % outliers", sampled("torus", 20000, 0.0025, 0.05), {"H": Target(0.05, 0.022)}, quick=True),
     ]
     return (
         "Torus of 20 000 points, 0.25 % noise, far outliers anywhere in 1.2 times the box; errors on the inliers.\n\n"
@@ -367,7 +312,7 @@ def wrong_normals(points: int, share: float) -> Callable[[int], Cloud]:
 
 def random_normals(settings: Settings) -> str:
     cases = [
-        Case(f"{100 * share:g} % random normals", wrong_normals(2000, share), {"k1 RMS": (0.05, 0.03)}, quick=True)
+        Case(f"{100 * share:g} % random normals", wrong_normals(2000, share), {"k1 RMS": Target(0.05, 0.03)}, quick=True)
         for share in (0.15, 0.3)
     ]
     return (
@@ -391,8 +336,8 @@ def beside_edges(points: int, noise: float) -> Callable[[int], Cloud]:
 def cube(settings: Settings) -> str:
     figure = "normals RMS, degrees"
     cases = [
-        Case("cube 60 000, clean", beside_edges(60000, 0.0), {figure: (2.0, 0.5)}),
-        Case("cube 60 000, 0.5 %", beside_edges(60000, 0.005), {figure: (15.0, 8.0)}),
+        Case("cube 60 000, clean", beside_edges(60000, 0.0), {figure: Target(2.0, 0.5)}),
+        Case("cube 60 000, 0.5 %", beside_edges(60000, 0.005), {figure: Target(15.0, 8.0)}),
         Case("cube 6000, clean", beside_edges(6000, 0.0), {}, quick=True),
     ]
     methods = methods_of(settings)
@@ -404,46 +349,17 @@ def cube(settings: Settings) -> str:
     )
 
 
-def _peak_megabytes() -> float:
-    """Of this process since it was last reset; a child's `ru_maxrss` may be its parent's."""
-    status = Path("/proc/self/status").read_text(encoding="ascii")
-    kilobytes = next(line for line in status.splitlines() if line.startswith("VmHWM")).split()[1]
-    return int(kilobytes) / 1024.0
-
-
-def _timed(cloud: str, parameters: dict[str, str]) -> tuple[float, float, float]:
-    """Wall clock and processor time in microseconds per point, megabytes above the host with the cloud loaded."""
-    with np.load(cloud) as given:
-        meshes = measures.layer(given["positions"], given["normals"])
-    Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
-    loaded = _peak_megabytes()
-    wall, processor = time.perf_counter(), time.process_time()
-    meshes.compute_curvature_robust_per_vertex(**parameters)
-    wall, processor = time.perf_counter() - wall, time.process_time() - processor
-    per_point = 1e6 / meshes.current_mesh().vertex_number()
-    return wall * per_point, processor * per_point, _peak_megabytes() - loaded
-
-
-def timed_in_own_process(positions: np.ndarray, normals: np.ndarray, settings: Settings) -> tuple[float, float, float]:
-    """A fresh process each time: the plugin remembers the estimates of clouds it has seen."""
-    context = multiprocessing.get_context("spawn")
-    with tempfile.TemporaryDirectory() as folder, ProcessPoolExecutor(max_workers=1, mp_context=context) as pool:
-        cloud = Path(folder) / "cloud.npz"
-        np.savez(cloud, positions=positions, normals=normals)
-        return pool.submit(_timed, str(cloud), settings.parameters).result()
-
-
 def time_row(label: str, cloud: Cloud, settings: Settings) -> list[str]:
     print(f"time: {label}", file=sys.stderr)
-    wall, processor, _ = min(timed_in_own_process(cloud.positions, cloud.normals, settings) for _ in range(TIMED_RUNS))
-    row = [label, f"{wall:.0f}", f"{processor:.0f}", *verdict(wall, (100.0, 40.0))]
+    cost = min(cost_of(CURVATURE, cloud.positions, cloud.normals, settings.parameters) for _ in range(TIMED_RUNS))
+    row = [label, f"{cost.wall:.0f}", f"{cost.processor:.0f}", *verdict(cost.wall, Target(100.0, 40.0))]
     if settings.peers:
         for setting in JET_SETTINGS:
             seconds = min(jets_on(setting)(cloud).seconds_per_point for _ in range(TIMED_RUNS))
-            row.append(f"{1e6 * seconds / wall:.2f}")
+            row.append(f"{1e6 * seconds / cost.wall:.2f}")
         for scale in APSS_SCALES:
             estimate = apss_at(scale)(cloud)
-            row.append("crash" if estimate is None else f"{1e6 * estimate.seconds_per_point / wall:.2f}")
+            row.append("crash" if estimate is None else f"{1e6 * estimate.seconds_per_point / cost.wall:.2f}")
     return row
 
 
@@ -453,10 +369,10 @@ def memory_row(settings: Settings) -> str:
         return f"Peak memory on a large scan: skipped, no `{LARGE_SCAN}` (`--data FOLDER` says where it is)."
     print(f"memory: {LARGE_SCAN}", file=sys.stderr)
     positions, normals = measures.oriented_vertices(scan)
-    wall, _, megabytes = timed_in_own_process(positions, normals, settings)
+    cost = cost_of(CURVATURE, positions, normals, settings.parameters)
     return (
-        f"Peak memory at {len(positions)} points (`{LARGE_SCAN}`, vertices and vertex normals): **{megabytes:.0f} MB** "
-        f"above the host with the cloud loaded, {wall:.0f} µs per point."
+        f"Peak memory at {len(positions)} points (`{LARGE_SCAN}`, vertices and vertex normals): **{cost.megabytes:.0f} MB** "
+        f"above the host with the cloud loaded, {cost.wall:.0f} µs per point."
     )
 
 

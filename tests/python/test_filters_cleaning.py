@@ -177,3 +177,60 @@ def test_duplicates_stay_together_and_invalid_points_stay(torus, method):
     np.testing.assert_array_equal(moved[:20], moved[-20:])
     np.testing.assert_array_equal(moved[30], positions[30])
     assert np.any(moved[:20] != positions[:20])
+
+
+def selection_of(cloud):
+    meshes = layer_of(cloud)
+    meshes.apply_filter(OUTLIERS)
+    return meshes.current_mesh().vertex_selection_array()
+
+
+@pytest.mark.parametrize(
+    "kind, noise, recall", [({"outliers": 0.05}, 0.0025, 0.96), ({"near_outliers": 0.05}, 0.005, 0.88)]
+)
+def test_outliers_clearly_off_the_surface_are_found_and_little_else(kind, noise, recall):
+    cloud = generate("torus", 4000, noise=noise, seed=1, scanned=True, **kind)
+    selected, outside = selection_of(cloud), cloud["label"] != 0
+    far = distances(cloud["positions"]) > 3.0 * noise * analytic_surfaces.surface("torus").diagonal
+    assert np.mean(selected[outside & far]) >= recall
+    assert np.count_nonzero(selected & ~outside) <= 0.02 * np.count_nonzero(selected & outside & far)
+
+
+@pytest.mark.parametrize("surface", ["torus", "cube", "helicoid"])
+def test_clean_clouds_have_no_outliers(surface):
+    assert np.mean(selection_of(generate(surface, 4000, seed=1, scanned=True))) <= 0.001
+
+
+def denoised(cloud):
+    meshes = layer_of(cloud)
+    meshes.apply_filter(DENOISE)
+    return meshes.current_mesh().vertex_matrix()
+
+
+@pytest.mark.parametrize("surface, points, bound", [("torus", 1600, 0.26), ("helicoid", 1730, 0.25)])
+def test_denoising_neither_shrinks_nor_leaves_much_noise(surface, points, bound):
+    cloud = generate(surface, points, noise=0.005, seed=1, scanned=True)
+    before = rms(np.linalg.norm(cloud["positions"] - cloud["foot_points"], axis=1))
+    moved = denoised(cloud)
+    truth = analytic_surfaces.project(surface, moved)
+    offsets = moved - truth["foot_points"]
+    assert rms(np.linalg.norm(offsets, axis=1)) <= bound * before
+    assert abs(np.einsum("ij,ij->i", offsets, truth["normals"]).mean()) <= 0.03 * before
+
+
+def test_denoising_keeps_the_rim():
+    cloud = generate("helicoid", 1730, noise=0.005, seed=1, scanned=True)
+    spacing = np.sqrt(9.3 / len(cloud["positions"]))  # its area is 9.29
+    rim = cloud["rim_distance"] < spacing
+    moved = analytic_surfaces.project("helicoid", denoised(cloud))["rim_distance"]
+    assert np.quantile((moved - cloud["rim_distance"])[rim], 0.95) <= 0.1 * spacing
+
+
+def test_denoising_keeps_edges():
+    cloud = generate("cube", 6000, noise=0.005, seed=1, scanned=True)
+    edge = cloud["feature_distance"] < 0.05
+    before = np.linalg.norm(cloud["positions"] - cloud["foot_points"], axis=1)
+    moved = denoised(cloud)
+    after = np.linalg.norm(moved - analytic_surfaces.project("cube", moved)["foot_points"], axis=1)
+    assert rms(after[edge]) <= 0.35 * rms(before[edge])
+    assert rms(after[~edge]) <= 0.12 * rms(before[~edge])

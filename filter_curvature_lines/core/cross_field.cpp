@@ -19,7 +19,10 @@ using SparseComplex = Eigen::SparseMatrix<Complex>;
 
 constexpr double quarter         = 0.5 * double(EIGEN_PI);
 constexpr double sureErrors      = 3.0;  // k1 - k2 below so many standard errors tells no direction
-constexpr double fullErrors      = 20.0; // and from here on counts fully
+// A direction whose k1 - k2 is this many errors is smoothed over about a cell of the mesh; the more exact it
+// is, the less, down to a third of a cell.
+constexpr double cellErrors      = 45.0;
+constexpr double mostTrust       = 10.0;
 constexpr double leastRatio      = 0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
 constexpr double creaseWeight    = 1e3;
 constexpr double regularization  = 1e-9;
@@ -187,7 +190,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 			sure < sureErrors)
 			continue;
 		const double ratio      = difference / size;
-		const double confidence = std::min(1.0, sure * sure / (fullErrors * fullErrors));
+		const double confidence = std::min(mostTrust, sure * sure / (cellErrors * cellErrors));
 		guide.weights[v]        = confidence * ratio * ratio * areas[v] / (cell * cell);
 	}
 
@@ -226,7 +229,7 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 	field.onCrease = guide.onCrease;
 	field.d2.resize(3, n);
 	for (Index v = 0; v < n; ++v)
-		turnFrame(field, v, 0.0);
+		field.d2.col(v) = field.normals.col(v).cross(field.d1.col(v));
 
 	const std::vector<Index> component = mesh.components();
 	std::vector<char>        guided(n, 0);

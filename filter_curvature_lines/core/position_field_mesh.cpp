@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "polygon_splitting.h"
+#include "quad_cleanup.h"
 #include "surface_arrangement.h"
 #include "surface_projection.h"
 
@@ -111,15 +111,12 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	result.droppedComponents += traced.arrangement.lostComponents;
 	progress.report(0.9);
 
-	result.mesh = std::move(traced.arrangement.mesh);
-	PolygonSplitter splitter(result.mesh);
-	splitter.cutLargeFaces();
-	splitter.pairWithPentagons();
-	result.mesh = splitter.mesh();
+	std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
+	result.mesh                 = cleanUpQuads(traced.arrangement.mesh, onFeature);
 	projectVertices(
 		cloud,
 		curvature,
-		traced.arrangement.onFeature,
+		onFeature,
 		result.mesh,
 		progress.sub(0.95, 1.0, "Projecting vertices"));
 	result.topology = topologyOf(result.mesh);

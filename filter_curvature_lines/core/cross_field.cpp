@@ -24,7 +24,6 @@ constexpr double sureErrors      = 3.0;  // k1 - k2 below so many standard error
 constexpr double cellErrors      = 45.0;
 constexpr double mostTrust       = 10.0;
 constexpr double leastRatio      = 0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
-constexpr double creaseWeight    = 1e3;
 constexpr double regularization  = 1e-9;
 constexpr double eigenShift      = 1e-8;
 constexpr int    eigenIterations = 40;
@@ -171,7 +170,8 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 	const TriangleMesh& mesh = scaffold.mesh;
 	const Index         n    = mesh.vertexCount();
 	DirectionGuide      guide;
-	guide.normals = mesh.vertexNormals();
+	const Eigen::Matrix3Xd fromTriangles = mesh.vertexNormals();
+	guide.normals                        = fromTriangles;
 	guide.directions.setZero(3, n);
 	guide.weights.setZero(n);
 	guide.onCrease.assign(n, 0);
@@ -194,24 +194,14 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 		guide.weights[v]        = confidence * ratio * ratio * areas[v] / (cell * cell);
 	}
 
-	// Along creases; at corners and ends, where the lines disagree, nothing is known.
-	std::vector<int> degree(n, 0);
-	for (Index e = 0; e < mesh.edgeCount(); ++e) {
-		if (!scaffold.creaseEdge[e])
-			continue;
-		const Vector3d tangent = mesh.along(e).normalized();
-		for (const Index v : {mesh.edges()[e].from, mesh.edges()[e].to}) {
-			Eigen::Ref<Eigen::Vector3d> sum = guide.directions.col(v);
-			if (!guide.onCrease[v])
-				sum.setZero();
-			guide.onCrease[v] = 1;
-			++degree[v];
-			sum += sum.dot(tangent) < 0.0 ? Vector3d(-tangent) : tangent;
-		}
-	}
+	for (Index e = 0; e < mesh.edgeCount(); ++e)
+		if (scaffold.creaseEdge[e])
+			for (const Index v : {mesh.edges()[e].from, mesh.edges()[e].to}) {
+				guide.onCrease[v]    = 1;
+				guide.weights[v]     = 0.0;
+				guide.normals.col(v) = fromTriangles.col(v);
+			}
 	for (Index v = 0; v < n; ++v) {
-		if (guide.onCrease[v])
-			guide.weights[v] = degree[v] == 2 ? creaseWeight : 0.0;
 		Vector3d d = guide.directions.col(v);
 		d -= d.dot(guide.normals.col(v)) * guide.normals.col(v);
 		guide.directions.col(v) =

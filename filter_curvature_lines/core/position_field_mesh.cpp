@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "feature_alignment.h"
 #include "quad_cleanup.h"
-#include "surface_arrangement.h"
 #include "surface_projection.h"
 
 namespace curvature_lines {
@@ -74,7 +74,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	ScaffoldOptions         forScaffold = options.scaffold;
 	forScaffold.targetVertices          = options.targetVertices;
 	forScaffold.noise                   = options.noise;
-	const Scaffold scaffold =
+	Scaffold scaffold =
 		buildScaffold(cloud, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
 	const TriangleMesh& mesh  = scaffold.mesh;
 	result.scaffoldVertices   = mesh.vertexCount();
@@ -85,11 +85,15 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	if (mesh.triangleCount() == 0)
 		return result;
 
-	const CrossField field   = smoothCrossField(mesh, directionGuide(scaffold, curvature));
+	const std::vector<Rim> rims = findRims(mesh);
+	DirectionGuide         guide = directionGuide(scaffold, curvature);
+	fitRims(rims, cloud, guide.normals, options.noise, scaffold);
+	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
+	const CrossField       field     = smoothCrossField(mesh, guide);
 	result.singularTriangles = field.singularTriangles();
 	progress.report(0.4);
-	const PhasePins    pins(mesh.vertexCount());
-	SurfaceFeatures    features{scaffold.creaseEdge, std::vector<char>(mesh.vertexCount(), 0)};
+	const PhasePins        pins     = featurePins(alignment, field);
+	const SurfaceFeatures& features = alignment.features;
 	LineDensityOptions wanted;
 	wanted.targetVertices = options.targetVertices;
 	wanted.anisotropy     = options.anisotropy;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "feature_alignment.h"
+#include "polygon_splitting.h"
 #include "quad_cleanup.h"
 #include "surface_projection.h"
 
@@ -16,6 +17,7 @@ namespace curvature_lines {
 namespace {
 
 constexpr double countTolerance = 0.03; // beyond, the density is corrected once
+constexpr double closedRim      = 12.0; // edges of the mesh, as of traced lines
 
 struct Traced {
 	SurfaceArrangement arrangement;
@@ -74,6 +76,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	ScaffoldOptions         forScaffold = options.scaffold;
 	forScaffold.targetVertices          = options.targetVertices;
 	forScaffold.noise                   = options.noise;
+	forScaffold.closedRim               = options.mesh.closeHoles ? closedRim : 0.0;
 	Scaffold scaffold =
 		buildScaffold(cloud, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
 	const TriangleMesh& mesh  = scaffold.mesh;
@@ -117,12 +120,22 @@ PositionFieldMeshResult buildPositionFieldMesh(
 
 	std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
 	result.mesh                 = cleanUpQuads(traced.arrangement.mesh, onFeature);
+	if (options.mesh.splitConcave) {
+		PolygonSplitter splitter(result.mesh);
+		splitter.splitConcaveFaces();
+		result.mesh = splitter.mesh();
+	}
 	projectVertices(
 		cloud,
 		curvature,
 		onFeature,
 		result.mesh,
 		progress.sub(0.95, 1.0, "Projecting vertices"));
+	if (options.mesh.triangulate) {
+		PolygonSplitter splitter(result.mesh);
+		splitter.triangulate();
+		result.mesh = splitter.mesh();
+	}
 	result.topology = topologyOf(result.mesh);
 	return result;
 }

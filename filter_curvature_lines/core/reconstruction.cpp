@@ -130,6 +130,8 @@ void fillPositionField(
 	StageClock&                  clock,
 	const Progress&              progress)
 {
+	result.umbilics = findUmbilics(result.cloud, result.field, minimum, options.umbilics);
+	clock.book("umbilics");
 	result.creases = findCreases(
 		result.cloud, minimum, options.creases, progress.sub(0.0, 0.2, "Finding creases"));
 	clock.book("creases");

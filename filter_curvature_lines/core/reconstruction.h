@@ -42,8 +42,8 @@ struct ReconstructionResult {
 	std::vector<Index> kept;    // input index of each point of `cloud`
 	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
-	UmbilicRegions     umbilics; // TracedLines, as the lines
-	LineNetwork        lines;
+	UmbilicRegions     umbilics;
+	LineNetwork        lines;   // TracedLines
 	Creases            creases; // PositionField
 	PositionFieldMeshResult mesh; // TracedLines: without what is particular to position fields
 	double             noise = 0.0; // standard deviation of heights, if robustly cleaned of outliers or noise

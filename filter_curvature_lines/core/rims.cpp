@@ -19,15 +19,16 @@ constexpr Index  tangentReach   = 4; // vertices to both sides
 constexpr Index  chordReach     = 5;
 constexpr Index  cornerReach    = 6;   // a corner is the sharpest turn within so many
 constexpr double cornerCosine   = 0.6; // of the turn: 53 degrees
-constexpr double windowLength   = 1.5; // half the part of the rim looked at; these in vertex spacings
+constexpr double windowLength   = 2.5; // half the part of the rim looked at; these in vertex spacings
 constexpr double windowDepth    = 3.0;
-constexpr double mostOffset     = 1.2;
+constexpr double mostOffset     = 1.5;
 constexpr double sheetHeight    = 1.0;
 constexpr double sameSheet      = 0.5; // cosine of normals
 constexpr Index  fewestPoints   = 4;
 constexpr double secondOutermost = 1.678; // median number of points as far out as the second outermost
-constexpr int    smoothingSteps = 3;
-constexpr Index  lineBegin = 2, lineEnd = 6; // vertices beside a corner that its sides are fitted to
+constexpr int    smoothingSteps = 8;
+constexpr double smoothing = 0.5, unshrinking = -0.53; // Taubin 1995: a low-pass filter that does not shrink
+constexpr Index  lineBegin = 2, lineEnd = 7; // vertices beside a corner that its sides are fitted to
 
 // Points expected beyond x when they lie `density` per length up to 0, blurred by `noise`.
 double expectedBeyond(double x, double density, double noise)
@@ -89,8 +90,10 @@ void fitLine(const Rim& rim, Index k, Index step, const Eigen::Matrix3Xd& positi
 	const double count = lineEnd - lineBegin + 1;
 	for (Index m = lineBegin; m <= lineEnd; ++m)
 		origin += positions.col(rim.at(k + step * m)) / count;
-	direction = (positions.col(rim.at(k + step * lineEnd)) - positions.col(rim.at(k + step * lineBegin)))
-					.normalized();
+	direction.setZero();
+	for (Index m = lineBegin; m <= lineEnd; ++m)
+		direction += (m - 0.5 * (lineBegin + lineEnd)) * positions.col(rim.at(k + step * m));
+	direction.normalize();
 }
 
 } // namespace
@@ -160,12 +163,15 @@ void fitRims(
 		for (Index k = 0; k < rim.size(); ++k)
 			positions.col(rim.at(k)) = moved[k];
 		for (int step = 0; step < smoothingSteps; ++step) {
-			for (Index k = 0; k < rim.size(); ++k)
-				moved[k] = rim.corner[k] ? Vector3d(positions.col(rim.at(k))) :
-					Vector3d(0.5 * positions.col(rim.at(k)) +
-							 0.25 * (positions.col(rim.at(k - 1)) + positions.col(rim.at(k + 1))));
-			for (Index k = 0; k < rim.size(); ++k)
-				positions.col(rim.at(k)) = moved[k];
+			for (const double share : {smoothing, unshrinking}) {
+				for (Index k = 0; k < rim.size(); ++k) {
+					const Vector3d p      = positions.col(rim.at(k));
+					const Vector3d middle = 0.5 * (positions.col(rim.at(k - 1)) + positions.col(rim.at(k + 1)));
+					moved[k] = rim.corner[k] ? p : Vector3d(p + share * (middle - p));
+				}
+				for (Index k = 0; k < rim.size(); ++k)
+					positions.col(rim.at(k)) = moved[k];
+			}
 		}
 		for (Index k = 0; k < rim.size(); ++k) {
 			if (!rim.corner[k])
@@ -180,7 +186,7 @@ void fitRims(
 			const Vector3d w    = q - p;
 			const double   s    = (w.dot(d) - b * w.dot(e)) / det, t = (b * w.dot(d) - w.dot(e)) / det;
 			const Vector3d meet = 0.5 * (p + s * d + q + t * e);
-			if ((meet - positions.col(rim.at(k))).norm() < 3.0 * scaffold.spacing)
+			if ((meet - positions.col(rim.at(k))).norm() < mostOffset * scaffold.spacing)
 				positions.col(rim.at(k)) = meet;
 		}
 	}

@@ -24,7 +24,7 @@ SAMPLES = [
 def run(file: Path, out: Path) -> Reconstruction:
     cloud = load_cloud(file)
     with progress_bar(f"{file.stem[:20]:<22}") as report:
-        result = reconstruct(cloud, report)
+        result = reconstruct(cloud, report, lines=True)
     result.save(result.mesh, out / f"{file.stem}_mesh.obj")
     result.save(result.lines, out / f"{file.stem}_lines.obj")
     mesh, lines = result.layer(result.mesh), result.layer(result.lines)

@@ -19,9 +19,11 @@ using SparseComplex = Eigen::SparseMatrix<Complex>;
 
 constexpr double quarter         = 0.5 * double(EIGEN_PI);
 constexpr double sureErrors      = 3.0;  // k1 - k2 below so many standard errors tells no direction
-constexpr double fullErrors      = 20.0; // and from here on counts fully
+// A direction whose k1 - k2 is this many errors is smoothed over about a cell of the mesh; the more exact it
+// is, the less, down to a third of a cell.
+constexpr double cellErrors      = 45.0;
+constexpr double mostTrust       = 10.0;
 constexpr double leastRatio      = 0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
-constexpr double creaseWeight    = 1e3;
 constexpr double regularization  = 1e-9;
 constexpr double eigenShift      = 1e-8;
 constexpr int    eigenIterations = 40;
@@ -168,7 +170,8 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 	const TriangleMesh& mesh = scaffold.mesh;
 	const Index         n    = mesh.vertexCount();
 	DirectionGuide      guide;
-	guide.normals = mesh.vertexNormals();
+	const Eigen::Matrix3Xd fromTriangles = mesh.vertexNormals();
+	guide.normals                        = fromTriangles;
 	guide.directions.setZero(3, n);
 	guide.weights.setZero(n);
 	guide.onCrease.assign(n, 0);
@@ -187,28 +190,18 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 			sure < sureErrors)
 			continue;
 		const double ratio      = difference / size;
-		const double confidence = std::min(1.0, sure * sure / (fullErrors * fullErrors));
+		const double confidence = std::min(mostTrust, sure * sure / (cellErrors * cellErrors));
 		guide.weights[v]        = confidence * ratio * ratio * areas[v] / (cell * cell);
 	}
 
-	// Along creases; at corners and ends, where the lines disagree, nothing is known.
-	std::vector<int> degree(n, 0);
-	for (Index e = 0; e < mesh.edgeCount(); ++e) {
-		if (!scaffold.creaseEdge[e])
-			continue;
-		const Vector3d tangent = mesh.along(e).normalized();
-		for (const Index v : {mesh.edges()[e].from, mesh.edges()[e].to}) {
-			Eigen::Ref<Eigen::Vector3d> sum = guide.directions.col(v);
-			if (!guide.onCrease[v])
-				sum.setZero();
-			guide.onCrease[v] = 1;
-			++degree[v];
-			sum += sum.dot(tangent) < 0.0 ? Vector3d(-tangent) : tangent;
-		}
-	}
+	for (Index e = 0; e < mesh.edgeCount(); ++e)
+		if (scaffold.creaseEdge[e])
+			for (const Index v : {mesh.edges()[e].from, mesh.edges()[e].to}) {
+				guide.onCrease[v]    = 1;
+				guide.weights[v]     = 0.0;
+				guide.normals.col(v) = fromTriangles.col(v);
+			}
 	for (Index v = 0; v < n; ++v) {
-		if (guide.onCrease[v])
-			guide.weights[v] = degree[v] == 2 ? creaseWeight : 0.0;
 		Vector3d d = guide.directions.col(v);
 		d -= d.dot(guide.normals.col(v)) * guide.normals.col(v);
 		guide.directions.col(v) =
@@ -226,7 +219,7 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 	field.onCrease = guide.onCrease;
 	field.d2.resize(3, n);
 	for (Index v = 0; v < n; ++v)
-		turnFrame(field, v, 0.0);
+		field.d2.col(v) = field.normals.col(v).cross(field.d1.col(v));
 
 	const std::vector<Index> component = mesh.components();
 	std::vector<char>        guided(n, 0);

@@ -32,8 +32,8 @@ struct CrossField {
 	Index singularTriangles() const;
 };
 
-// Confidence from the standard error of k1 - k2; creases fix the direction along them. Vertices that are no
-// points of the cloud get their normals from the triangles around.
+// Confidence from the standard error of k1 - k2. Vertices on creases and those that are no points of the cloud
+// get their normals from the triangles around, and no direction.
 DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& curvature);
 
 CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guide);

@@ -7,8 +7,9 @@
 
 #include <Eigen/Geometry>
 
+#include "feature_alignment.h"
 #include "polygon_splitting.h"
-#include "surface_arrangement.h"
+#include "quad_cleanup.h"
 #include "surface_projection.h"
 
 namespace curvature_lines {
@@ -16,6 +17,7 @@ namespace curvature_lines {
 namespace {
 
 constexpr double countTolerance = 0.03; // beyond, the density is corrected once
+constexpr double closedRim      = 12.0; // edges of the mesh, as of traced lines
 
 struct Traced {
 	SurfaceArrangement arrangement;
@@ -74,7 +76,8 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	ScaffoldOptions         forScaffold = options.scaffold;
 	forScaffold.targetVertices          = options.targetVertices;
 	forScaffold.noise                   = options.noise;
-	const Scaffold scaffold =
+	forScaffold.closedRim               = options.mesh.closeHoles ? closedRim : 0.0;
+	Scaffold scaffold =
 		buildScaffold(cloud, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
 	const TriangleMesh& mesh  = scaffold.mesh;
 	result.scaffoldVertices   = mesh.vertexCount();
@@ -85,11 +88,15 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	if (mesh.triangleCount() == 0)
 		return result;
 
-	const CrossField field   = smoothCrossField(mesh, directionGuide(scaffold, curvature));
+	const std::vector<Rim> rims = findRims(mesh);
+	DirectionGuide         guide = directionGuide(scaffold, curvature);
+	fitRims(rims, cloud, guide.normals, options.noise, scaffold);
+	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
+	const CrossField       field     = smoothCrossField(mesh, guide);
 	result.singularTriangles = field.singularTriangles();
 	progress.report(0.4);
-	const PhasePins    pins(mesh.vertexCount());
-	SurfaceFeatures    features{scaffold.creaseEdge, std::vector<char>(mesh.vertexCount(), 0)};
+	const PhasePins        pins     = featurePins(alignment, field);
+	const SurfaceFeatures& features = alignment.features;
 	LineDensityOptions wanted;
 	wanted.targetVertices = options.targetVertices;
 	wanted.anisotropy     = options.anisotropy;
@@ -111,17 +118,24 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	result.droppedComponents += traced.arrangement.lostComponents;
 	progress.report(0.9);
 
-	result.mesh = std::move(traced.arrangement.mesh);
-	PolygonSplitter splitter(result.mesh);
-	splitter.cutLargeFaces();
-	splitter.pairWithPentagons();
-	result.mesh = splitter.mesh();
+	std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
+	result.mesh                 = cleanUpQuads(traced.arrangement.mesh, onFeature);
+	if (options.mesh.splitConcave) {
+		PolygonSplitter splitter(result.mesh);
+		splitter.splitConcaveFaces();
+		result.mesh = splitter.mesh();
+	}
 	projectVertices(
 		cloud,
 		curvature,
-		traced.arrangement.onFeature,
+		onFeature,
 		result.mesh,
 		progress.sub(0.95, 1.0, "Projecting vertices"));
+	if (options.mesh.triangulate) {
+		PolygonSplitter splitter(result.mesh);
+		splitter.triangulate();
+		result.mesh = splitter.mesh();
+	}
 	result.topology = topologyOf(result.mesh);
 	return result;
 }

@@ -1,21 +1,25 @@
 // The whole pipeline (A09 fig. 1): outliers out, points denoised, curvature, directions, lines, mesh.
-// A09 estimates curvature first; robust outlier rejection and denoising need none, so that it is estimated
-// once, on clean points.
+// A09 estimates curvature first; robust outlier rejection and denoising need none, so that it is estimated once.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include <map>
 #include <string>
 
+#include "creases.h"
 #include "curvature_estimate.h"
 #include "denoising.h"
 #include "direction_smoothing.h"
 #include "outlier_rejection.h"
-#include "quad_mesh.h"
+#include "position_field_mesh.h"
 
 namespace curvature_lines {
 
 struct ReconstructionOptions {
+	// PositionField: the lines are where two phases on a triangulated scaffold are whole numbers. TracedLines:
+	// as published.
+	enum class Method { PositionField, TracedLines };
+	Method                     method           = Method::PositionField;
 	bool                       rejectOutliers   = true;
 	bool                       denoise          = true;
 	bool                       smoothDirections = true;
@@ -25,7 +29,9 @@ struct ReconstructionOptions {
 	DenoisingOptions           denoising;
 	DirectionSmoothingOptions  directions;
 	UmbilicOptions             umbilics;
-	LineTracingOptions tracing; // targetVertices 0 and epsilon 0: from the size of the cloud
+	LineTracingOptions tracing; // targetVertices 0 and epsilon 0: from the size of the cloud; both methods
+	CreaseOptions      creases;  // PositionField
+	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
 	QuadMeshOptions    mesh;
 
 	ReconstructionOptions() { tracing.epsilon = 0.0; }
@@ -37,8 +43,9 @@ struct ReconstructionResult {
 	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
 	UmbilicRegions     umbilics;
-	LineNetwork        lines;
-	QuadMeshResult     mesh;
+	LineNetwork        lines;   // TracedLines
+	Creases            creases; // PositionField
+	PositionFieldMeshResult mesh; // TracedLines: without what is particular to position fields
 	double             noise = 0.0; // standard deviation of heights, if robustly cleaned of outliers or noise
 	double             rmsMove = 0.0;      // by denoising
 	std::map<std::string, double> seconds; // per stage: outliers, neighborhoods, curvature, …

@@ -357,7 +357,8 @@ bool isOutside(const HalfEdgeGraph& graph, const std::vector<Index>& loop)
 	return std::any_of(loop.begin(), loop.end(), [&](Index h) { return graph.isOutside(h); });
 }
 
-// By name of component: V - E + loops, those outside of rims left out, minus its Euler characteristic.
+// By name of component: V - E + loops, those outside of rims left out, minus its Euler characteristic. Not 0
+// either where there is no graph at all.
 std::vector<Index> certificate(
 	const TriangleMesh&       mesh,
 	const std::vector<Index>& component,
@@ -365,20 +366,30 @@ std::vector<Index> certificate(
 	const std::vector<Index>& nodeComponents)
 {
 	std::vector<Index> excess(mesh.vertexCount(), 0);
-	for (Index v = 0; v < mesh.vertexCount(); ++v)
+	std::vector<char>  empty(mesh.vertexCount(), 0);
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
 		--excess[component[v]];
+		empty[component[v]] = 1;
+	}
 	for (const auto& edge : mesh.edges())
 		++excess[component[edge.from]];
 	for (const Triangle& t : mesh.triangles())
 		--excess[component[t[0]]];
-	for (Index v = 0; v < graph.vertexCount(); ++v)
-		excess[nodeComponents[v]] += !graph.around(v).empty();
+	for (Index v = 0; v < graph.vertexCount(); ++v) {
+		if (graph.around(v).empty())
+			continue;
+		++excess[nodeComponents[v]];
+		empty[nodeComponents[v]] = 0;
+	}
 	for (Index e = 0; e < graph.edgeCount(); ++e)
 		if (graph.alive(e))
 			--excess[nodeComponents[graph.edge(e).from]];
 	for (const auto& loop : graph.faceLoops())
 		if (!isOutside(graph, loop))
 			++excess[nodeComponents[graph.origin(loop[0])]];
+	for (std::size_t c = 0; c < empty.size(); ++c)
+		if (empty[c])
+			excess[c] = 1;
 	return excess;
 }
 

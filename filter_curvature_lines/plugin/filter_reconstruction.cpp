@@ -23,9 +23,13 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichEnum(
 		"method",
 		0,
-		QStringList() << "Traced Lines",
+		QStringList() << "Position Field"
+					  << "Traced Lines",
 		"Method",
 		"How the mesh is found.<ul>"
+		"<li><b>Position Field</b>: on a triangulation of the cleaned points, by two phases that follow "
+		"the principal directions; rims and sharp creases become edges, and every face is certified to be "
+		"a disk</li>"
 		"<li><b>Traced Lines</b>: between traced lines of curvature, as published</li></ul>"));
 	list.addParam(RichInt(
 		"target_vertices",
@@ -40,6 +44,12 @@ RichParameterList parameters(const MeshDocument&)
 		"Sets the density of the lines if no target number is given: how far the chord between two "
 		"lines leaves the surface, as a fraction of the bounding-box diagonal (0 = automatic, at "
 		"most 0.5)."));
+	list.addParam(RichFloat(
+		"anisotropy",
+		static_cast<Scalarm>(defaults.anisotropy),
+		"Anisotropy",
+		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; 1 = "
+		"not at all)."));
 	addMeshParameters(list);
 	list.addParam(RichBool(
 		"reject_outliers", defaults.rejectOutliers, "Reject outliers", "Leave outliers out."));
@@ -52,7 +62,8 @@ RichParameterList parameters(const MeshDocument&)
 		"smooth_directions",
 		defaults.smoothDirections,
 		"Smooth the directions",
-		"Smooth the field of principal directions before tracing."));
+		"Traced Lines: smooth the field of principal directions before tracing. A position field always "
+		"is, as far as the directions are uncertain."));
 	list.addParam(RichEnum(
 		"estimate_normals",
 		0,
@@ -69,14 +80,16 @@ RichParameterList parameters(const MeshDocument&)
 		"keep_intermediate_layers",
 		false,
 		"Keep intermediate layers",
-		"Add the cleaned cloud, with its curvature, and the lines as layers of their own."));
+		"Add the cleaned cloud, with its curvature, and traced lines as layers of their own."));
 	return list;
 }
 
 ReconstructionOptions reconstructionOptions(const Parameters& parameters)
 {
 	ReconstructionOptions options;
-	parameters.choice("method");
+	using Method   = ReconstructionOptions::Method;
+	options.method = parameters.choice("method") == 0 ? Method::PositionField : Method::TracedLines;
+	options.anisotropy             = parameters.real("anisotropy", 1.0, 10.0);
 	options.rejectOutliers         = parameters.flag("reject_outliers");
 	options.denoise                = parameters.flag("denoise");
 	options.smoothDirections       = parameters.flag("smooth_directions");
@@ -138,6 +151,13 @@ void writeCleanedCloud(
 void reportStages(FilterResults& results, const ReconstructionResult& result)
 {
 	results.count("outliers", std::count(result.outlier.begin(), result.outlier.end(), char(1)));
+	results.count("creases", static_cast<Index>(result.creases.curves.size()));
+	results.count("cones", result.mesh.singularTriangles);
+	results.count("line_ends", result.mesh.lineEnds);
+	results.count("scaffold_vertices", result.mesh.scaffoldVertices);
+	results.count("filled_holes", result.mesh.filledHoles);
+	results.count("dropped_components", result.mesh.droppedComponents);
+	results.count("repaired_components", result.mesh.repairedComponents);
 	results.count(
 		"umbilic",
 		std::count(result.umbilics.umbilic.begin(), result.umbilics.umbilic.end(), char(1)));
@@ -176,17 +196,16 @@ FilterResults apply(const FilterContext& context)
 		reconstruct(prepared.cloud, options, context.progress.sub(0.1, 1.0, ""));
 	if (result.mesh.mesh.faceCount() == 0)
 		throw MLException(
-			"no face was found between the lines of curvature (" +
-			QString::number(result.lines.lines()) +
-			" lines): the surface is flat or umbilic everywhere, or the cloud is too sparse for "
-			"the "
-			"chosen density. Raise 'target_vertices', or check that the normals are right.");
+			"no face was found: the cloud is too sparse for the chosen density, or (Traced Lines) flat or "
+			"umbilic everywhere. Raise 'target_vertices', or check that the normals are right.");
 
 	NewLayers layers(context.document);
 	if (intermediates) {
 		MeshModel& cleaned = layers.add("cleaned cloud", source);
 		writeCleanedCloud(cleaned, result, prepared);
-		writeLines(layers.add("lines of curvature", source), result.lines, prepared, cleaned.id());
+		if (result.lines.lines() > 0)
+			writeLines(
+				layers.add("lines of curvature", source), result.lines, prepared, cleaned.id());
 	}
 	MeshModel&         layer    = layers.add("curvature-aligned mesh", source);
 	const MeshTopology topology = writePolygons(layer, result.mesh.mesh, prepared);
@@ -214,8 +233,8 @@ FilterSpec reconstructionFilter()
 		"generate_surface_reconstruction_curvature_aligned",
 		"Makes a quad-dominant mesh from a point cloud, its edges aligned with the principal "
 		"directions of curvature. In one step: outliers are left out, normals and positions "
-		"denoised, curvature and directions estimated and smoothed, lines of curvature traced, and "
-		"the faces between them built." +
+		"denoised, curvature and directions estimated, creases and rims found, and the faces between "
+		"lines along the directions built." +
 			helpInput +
 			" This filter can estimate missing normals itself."
 			"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in "

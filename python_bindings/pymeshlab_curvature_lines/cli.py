@@ -17,6 +17,7 @@ from .pipeline import Reconstruction, load_cloud, reconstruct
 from .progress import progress_bar
 from .report import number, write_report
 
+METHODS = {"position-field": "Position Field", "traced-lines": "Traced Lines"}
 NORMALS = {"if-missing": "If Missing", "never": "Never", "always": "Always"}
 
 
@@ -32,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("-o", "--output", type=Path, required=True, metavar="OUTPUT.obj", help="the mesh")
     options.add_argument("--lines", type=Path, metavar="LINES.obj", help="the lines of curvature as well")
     options.add_argument("--report", type=Path, metavar="REPORT.html", help="counts, timings and a picture")
+    options.add_argument("--method", choices=METHODS, default="position-field", help="how the mesh is found")
     options.add_argument("--target-vertices", type=int, default=0, metavar="N", help="0 (default): from the cloud")
     options.add_argument("--epsilon", type=float, default=0, metavar="E", help="chord error, fraction of the diagonal")
     options.add_argument("--normals", choices=NORMALS, default="if-missing", help="when to estimate normals")
@@ -79,6 +81,7 @@ def _checked(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 def _run(options: argparse.Namespace) -> None:
     parameters = {
+        "method": METHODS[options.method],
         "target_vertices": options.target_vertices,
         "epsilon": options.epsilon,
         "estimate_normals": NORMALS[options.normals],
@@ -90,7 +93,7 @@ def _run(options: argparse.Namespace) -> None:
     }
     cloud = load_cloud(options.input)
     with nullcontext() if options.quiet else progress_bar() as report:
-        result = reconstruct(cloud, report, **parameters)
+        result = reconstruct(cloud, report, lines=options.lines is not None, **parameters)
 
     result.save(result.mesh, options.output)
     if options.lines:

@@ -23,7 +23,7 @@ class Reconstruction:
 
     meshset: pymeshlab.MeshSet
     cleaned: int  # layer ids
-    lines: int
+    lines: int | None  # when asked for
     mesh: int
     counts: dict[str, float]  # as the filter returned them, without the timings
     seconds: dict[str, float]  # per stage, and "total"
@@ -51,17 +51,27 @@ def load_cloud(file: str | PathLike[str]) -> pymeshlab.MeshSet:
     return cloud
 
 
-def reconstruct(cloud: pymeshlab.MeshSet, report: Report | None = None, **parameters: object) -> Reconstruction:
-    """Runs the whole pipeline on the current layer; ``parameters`` are the filter's own."""
+def reconstruct(
+    cloud: pymeshlab.MeshSet, report: Report | None = None, *, lines: bool = False, **parameters: object
+) -> Reconstruction:
+    """Runs the whole pipeline on the current layer; ``parameters`` are the filter's own.
+
+    ``lines``: lines of curvature of the cleaned cloud as well, about as dense as those of the mesh.
+    """
     with progress(cloud, report) if report else nullcontext():
         result = cloud.generate_surface_reconstruction_curvature_aligned(keep_intermediate_layers=True, **parameters)
-    cleaned, lines, mesh = [layer.id() for layer in cloud][-3:]
+        layers = {layer.label(): layer.id() for layer in cloud}
+        if lines and "lines of curvature" not in layers:
+            cloud.set_current_mesh(layers["cleaned cloud"])
+            traced = cloud.generate_curvature_lines(target_vertices=result["vertices"])
+            layers["lines of curvature"] = cloud.current_mesh_id()
+            result |= {"lines": traced["lines"], "seconds_lines": traced["seconds_total"]}
     prefix = "seconds_"
     return Reconstruction(
         cloud,
-        cleaned,
-        lines,
-        mesh,
+        layers["cleaned cloud"],
+        layers.get("lines of curvature") if lines else None,
+        layers["curvature-aligned mesh"],
         counts={name: value for name, value in result.items() if not name.startswith(prefix)},
         seconds={name.removeprefix(prefix): value for name, value in result.items() if name.startswith(prefix)},
     )

@@ -48,9 +48,12 @@ distanceTo(const std::string& name, const PreparedCloud& frame, const Eigen::Mat
 	return std::sqrt(sum / double(positions.cols())) / surface.diagonal();
 }
 
-ReconstructionOptions quick()
+using Method = ReconstructionOptions::Method;
+
+ReconstructionOptions quick(Method method = Method::PositionField)
 {
 	ReconstructionOptions options;
+	options.method         = method;
 	options.rejectOutliers = false;
 	options.denoise        = false;
 	return options;
@@ -58,16 +61,43 @@ ReconstructionOptions quick()
 
 TEST(Reconstruction, CleanTorusIsAQuadDominantTorus)
 {
-	const Scan                 scan   = scanOf(torus(2000));
-	const ReconstructionResult result = reconstruct(scan.prepared.cloud, quick());
-	const MeshTopology&        t      = result.mesh.topology;
-	EXPECT_EQ(t.eulerCharacteristic, 0);
-	EXPECT_EQ(t.components, 1);
-	EXPECT_EQ(t.boundaryEdges, 0);
-	EXPECT_EQ(t.nonmanifoldEdges, 0);
-	EXPECT_GT(t.quads, 0.6 * t.faces);
-	EXPECT_LT(distanceTo("torus", scan.prepared, result.mesh.mesh.vertices), 0.001);
-	EXPECT_LT(distanceTo("torus", scan.prepared, result.lines.vertices), 0.001);
+	const Scan scan = scanOf(torus(2000));
+	for (const Method method : {Method::PositionField, Method::TracedLines}) {
+		const ReconstructionResult result = reconstruct(scan.prepared.cloud, quick(method));
+		const MeshTopology&        t      = result.mesh.topology;
+		EXPECT_EQ(t.eulerCharacteristic, 0);
+		EXPECT_EQ(t.components, 1);
+		EXPECT_EQ(t.boundaryEdges, 0);
+		EXPECT_EQ(t.nonmanifoldEdges, 0);
+		EXPECT_GT(t.quads, (method == Method::PositionField ? 0.97 : 0.6) * t.faces);
+		EXPECT_LT(distanceTo("torus", scan.prepared, result.mesh.mesh.vertices), 0.001);
+		if (method == Method::TracedLines) {
+			EXPECT_LT(distanceTo("torus", scan.prepared, result.lines.vertices), 0.001);
+		}
+	}
+}
+
+// Of random points on a cube: the creases are found, and the twelve edges are edges of the mesh.
+TEST(Reconstruction, CubeKeepsItsEdges)
+{
+	samples::SampleRequest request;
+	request.surface                       = "cube";
+	request.points                        = 6000;
+	request.seed                          = 2;
+	const Scan                 scan       = scanOf(request);
+	const ReconstructionResult result     = reconstruct(scan.prepared.cloud, quick());
+	EXPECT_EQ(result.creases.curves.size(), 12u);
+	EXPECT_EQ(result.mesh.topology.eulerCharacteristic, 2);
+	EXPECT_EQ(result.mesh.topology.boundaryEdges, 0);
+	EXPECT_GT(result.mesh.topology.quads, 0.98 * result.mesh.topology.faces);
+	const Eigen::Matrix3Xd& vertices = result.mesh.mesh.vertices;
+	Index                   onEdges  = 0;
+	for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
+		Eigen::Array3d to = 0.5 - scan.prepared.toModel(vertices.col(i)).array().abs();
+		std::sort(to.data(), to.data() + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
+		onEdges += std::abs(to[0]) < 0.003 && std::abs(to[1]) < 0.003;
+	}
+	EXPECT_GT(onEdges, 12 * 4);
 }
 
 TEST(Reconstruction, DirtyScanIsCleanedAndStaysManifold)
@@ -126,7 +156,7 @@ TEST(Reconstruction, KeptPointsAndOutliersAreThePartsOfTheInput)
 TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
 {
 	const Scan            scan        = scanOf(torus(800));
-	ReconstructionOptions options     = quick();
+	ReconstructionOptions options     = quick(Method::TracedLines);
 	options.smoothDirections          = false;
 	const ReconstructionResult result = reconstruct(scan.prepared.cloud, options);
 	EXPECT_EQ(result.cloud.positions, scan.prepared.cloud.positions);
@@ -138,6 +168,10 @@ TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
 	for (const char* stage :
 		 {"neighborhoods", "curvature", "umbilics", "voronoi", "tracing", "mesh"})
 		EXPECT_EQ(result.seconds.count(stage), 1u) << stage;
+	const ReconstructionResult field = reconstruct(scan.prepared.cloud, quick());
+	for (const char* stage : {"neighborhoods", "curvature", "creases", "mesh"})
+		EXPECT_EQ(field.seconds.count(stage), 1u) << stage;
+	EXPECT_EQ(field.seconds.count("tracing"), 0u);
 }
 
 // The published scale leaves the normals to denoising; the directions are tangent to them either way.
@@ -169,6 +203,8 @@ TEST(Reconstruction, DensityFollowsTheCloudUnlessGiven)
 	options.tracing.epsilon        = 0.02;
 	const double coarse            = vertices();
 	options.tracing.epsilon        = 0.004;
+	EXPECT_LT(coarse, vertices());
+	options.method = Method::TracedLines;
 	EXPECT_LT(coarse, vertices());
 }
 

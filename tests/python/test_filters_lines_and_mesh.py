@@ -294,29 +294,67 @@ def test_pipeline_on_a_dirty_scan():
     cloud = generate("torus", 2000, noise=0.0025, outliers=0.03, seed=4, scanned=True)
     meshes = layer_of(cloud)
     before = snapshot(meshes)
-    report = check_report(meshes.apply_filter(PIPELINE), "outliers", "lines", *MESH_COUNTS)
+    report = check_report(
+        meshes.apply_filter(PIPELINE),
+        *("outliers", "creases", "cones", "line_ends", "dropped_components", "repaired_components", *MESH_COUNTS),
+    )
     assert snapshot(meshes)[1 : len(before)] == before[1:]
     assert meshes.mesh_number() == 2 and meshes.current_mesh().label() == "curvature-aligned mesh"
     mesh, _ = check_mesh(meshes, report)
     assert report["nonmanifold_edges"] == 0 and not report["normals_estimated"]
-    assert report["quads"] >= 0.5 * report["faces"]
+    assert report["euler_characteristic"] == 0 and report["boundary_edges"] == 0 and report["components"] == 1
+    assert report["quads"] >= 0.95 * report["faces"]
     # Small clouds get up to one vertex per four points, but no more than 500 vertices that way.
-    assert 0.5 * 500 < report["vertices"] < 2.0 * 500
+    assert 0.93 * 500 < report["vertices"] < 1.07 * 500
     assert rms(distances("torus", mesh.vertex_matrix())) < 0.0025 * analytic_surfaces.surface("torus").diagonal
-    assert {"seconds_curvature", "seconds_outliers", "seconds_denoising", "seconds_tracing", "seconds_mesh"} <= set(report)
+    assert {"seconds_curvature", "seconds_outliers", "seconds_denoising", "seconds_creases", "seconds_mesh"} <= set(report)
+
+
+@pytest.mark.parametrize(
+    "surface, points, euler, rims",
+    [("torus", 3000, 0, 0), ("sphere", 3000, 2, 0), ("cylinder", 4000, 0, 2), ("helicoid", 4000, 1, 1), ("cube", 6000, 2, 0)],
+)
+def test_pipeline_topology(surface, points, euler, rims):
+    meshes = layer_of(generate(surface, points, seed=6))
+    report = meshes.apply_filter(PIPELINE, target_vertices=400, **QUICK)
+    mesh, _ = check_mesh(meshes, report)
+    assert report["euler_characteristic"] == euler and report["boundary_loops"] == rims
+    assert report["components"] == 1 and report["nonmanifold_edges"] == 0 and report["nonmanifold_vertices"] == 0
+    assert 380 <= report["vertices"] <= 420
+    # The rims of the helicoid run at 45 degrees to its lines of curvature, which leaves triangles along them.
+    assert report["quads"] > (0.85 if surface == "helicoid" else 0.95) * report["faces"]
+    diagonal = analytic_surfaces.surface(surface).diagonal
+    assert rms(distances(surface, mesh.vertex_matrix())) < 0.002 * diagonal
+    assert report["creases"] == (12 if surface == "cube" else 0)
+
+
+def test_pipeline_anisotropy(torus):
+    even, uneven = (layer_of(torus).apply_filter(PIPELINE, anisotropy=a, target_vertices=200, **QUICK) for a in (1, 3))
+    assert even["euler_characteristic"] == uneven["euler_characteristic"] == 0
+    assert even["faces"] != uneven["faces"]
+    with pytest.raises(pymeshlab.PyMeshLabException, match="nisotropy"):
+        layer_of(torus).apply_filter(PIPELINE, anisotropy=0.5)
 
 
 def test_pipeline_keeps_intermediate_layers(torus):
     meshes = layer_of(torus)
     meshes.apply_filter(PIPELINE, keep_intermediate_layers=True, **QUICK)
     labels = [mesh.label() for mesh in meshes]
-    assert labels[1:] == ["cleaned cloud", "lines of curvature", "curvature-aligned mesh"]
-    assert meshes.current_mesh_id() == 3
+    assert labels[1:] == ["cleaned cloud", "curvature-aligned mesh"]
+    assert meshes.current_mesh_id() == 2
     cleaned = meshes.mesh(1)
     truth = analytic_surfaces.project("torus", cleaned.vertex_matrix())
     k1 = cleaned.vertex_custom_scalar_attribute_array("curv_k1")
     assert np.median(np.abs(k1 - truth["k1"])) < 0.1
     assert cleaned.vertex_curvature_principal_dir1_matrix().shape == (cleaned.vertex_number(), 3)
+
+
+def test_pipeline_keeps_traced_lines(torus):
+    meshes = layer_of(torus)
+    meshes.apply_filter(PIPELINE, method="Traced Lines", keep_intermediate_layers=True, **QUICK)
+    labels = [mesh.label() for mesh in meshes]
+    assert labels[1:] == ["cleaned cloud", "lines of curvature", "curvature-aligned mesh"]
+    assert meshes.current_mesh_id() == 3
     meshes.set_current_mesh(2)
     report = meshes.apply_filter(MESH)
     assert report["vertices"] == meshes.mesh(3).vertex_number()

@@ -92,7 +92,7 @@ PARAMETERS = {
     TRACE: {"epsilon": 1e-5, "target_vertices": 0, "min_spacing": 0.0, "max_spacing": 0.0, "tolerance": 0.01,
             "projection": 0, "umbilic_ratio": 0.95, "smooth_directions": True},
     MESH: {"triangulate": False, "split_concave": True, "close_holes": False},
-    PIPELINE: {"target_vertices": 0, "triangulate": False, "close_holes": False, "reject_outliers": True,
+    PIPELINE: {"method": 0, "target_vertices": 0, "anisotropy": 1.5, "triangulate": False, "close_holes": False, "reject_outliers": True,
                "denoise": True, "smooth_directions": True, "estimate_normals": 0, "scale_mode": 0, "keep_intermediate_layers": False},
     FEATURES: {"min_angle": 30.0, "spacing": 0.0, "denoise": True},
     M_WEIGHTED: {"bandwidth": 2.5, "exponent": 2, "neighbors": 60, "weighting": 0, "scalar": 0, "colorize": True, "umbilic_ratio": 0.95},

@@ -1,0 +1,199 @@
+// Strips between irregular faces, found by walking through opposite sides of quads.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quad_cleanup.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include <Eigen/Geometry>
+
+#include "polygon_splitting.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+using Face = std::vector<Index>;
+
+constexpr int rounds = 20;
+
+struct Gate { // a face entered through its side `side`, from corner `side` to the next
+	Index face, side;
+};
+
+struct Strip {
+	std::vector<Gate> path; // the side every face but the last is left through; the last is entered through
+};
+
+class StripFinder {
+public:
+	StripFinder(const std::vector<Face>& faces, const std::vector<Vector3d>& vertices) :
+			m_faces(faces), m_vertices(vertices)
+	{
+		for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
+			for (Index k = 0; k < sizeOf(f); ++k)
+				m_sides.emplace(key(faces[f][k], faces[f][(k + 1) % sizeOf(f)]), Gate{f, k});
+	}
+
+	std::vector<Strip> strips(Index longest) const
+	{
+		std::vector<Strip> found;
+		for (Index f = 0; f < static_cast<Index>(m_faces.size()); ++f)
+			if (sizeOf(f) == 3 || sizeOf(f) == 5)
+				for (Index k = 0; k < sizeOf(f); ++k)
+					if (sizeOf(f) == 3 || k == splitSide(f))
+						walk({f, k}, longest, found);
+		std::stable_sort(found.begin(), found.end(), [](const Strip& a, const Strip& b) {
+			return a.path.size() < b.path.size();
+		});
+		return found;
+	}
+
+	// Of a pentagon: the side opposite its flattest corner.
+	Index splitSide(Index f) const
+	{
+		const Face& face = m_faces[f];
+		Index       flattest = 0;
+		double      least    = 2.0;
+		for (Index k = 0; k < 5; ++k) {
+			const Vector3d a = m_vertices[face[(k + 4) % 5]] - m_vertices[face[k]];
+			const Vector3d b = m_vertices[face[(k + 1) % 5]] - m_vertices[face[k]];
+			const double   cosine = a.dot(b) / (a.norm() * b.norm() + 1e-300);
+			if (cosine < least) {
+				least    = cosine;
+				flattest = k;
+			}
+		}
+		return (flattest + 2) % 5;
+	}
+
+private:
+	Index sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
+	static std::uint64_t key(Index a, Index b)
+	{
+		return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
+	}
+
+	void walk(Gate at, Index longest, std::vector<Strip>& found) const
+	{
+		Strip strip;
+		for (Index quads = 0; quads <= longest;) {
+			strip.path.push_back(at);
+			const Face& face = m_faces[at.face];
+			const auto  next = m_sides.find(
+				key(face[(at.side + 1) % face.size()], face[at.side]));
+			if (next == m_sides.end())
+				return;
+			const Gate  in  = next->second;
+			const auto seen = [&](const Gate& g) { return g.face == in.face; };
+			if (std::any_of(strip.path.begin(), strip.path.end(), seen))
+				return;
+			const Index corners = sizeOf(in.face);
+			if (corners == 3 || (corners == 5 && splitSide(in.face) == in.side)) {
+				strip.path.push_back(in);
+				found.push_back(std::move(strip));
+				return;
+			}
+			if (corners != 4)
+				return;
+			at = {in.face, (in.side + 2) % 4};
+			++quads;
+		}
+	}
+
+	const std::vector<Face>&                m_faces;
+	const std::vector<Vector3d>&            m_vertices;
+	std::unordered_map<std::uint64_t, Gate> m_sides; // by their two vertices, in order
+};
+
+// The parts of the face at the end of a strip, whose side `side` gets vertex m in its middle.
+void splitEnd(const Face& face, Index side, Index m, std::vector<Face>& parts)
+{
+	if (face.size() == 3) {
+		parts.push_back({face[side], m, face[(side + 1) % 3], face[(side + 2) % 3]});
+		return;
+	}
+	const Index top = (side + 3) % 5;
+	parts.push_back({face[top], face[(top + 1) % 5], face[side], m});
+	parts.push_back({face[top], m, face[(side + 1) % 5], face[(side + 2) % 5]});
+}
+
+} // namespace
+
+PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, Index longestStrip)
+{
+	std::vector<Vector3d> vertices, normals;
+	std::vector<Face>     faces;
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
+		vertices.push_back(mesh.vertices.col(v));
+		normals.push_back(mesh.normals.col(v));
+	}
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		faces.emplace_back(mesh.faces[f].begin(), mesh.faces[f].end());
+	const auto middle = [&](const Face& face, Index side) {
+		const Index a = face[side], b = face[(side + 1) % face.size()];
+		vertices.push_back(0.5 * (vertices[a] + vertices[b]));
+		const Vector3d normal = normals[a] + normals[b];
+		normals.push_back(normal.norm() > 0.0 ? normal.normalized() : normals[a]);
+		onFeature.push_back(onFeature[a] && onFeature[b]);
+		return static_cast<Index>(vertices.size()) - 1;
+	};
+
+	for (int round = 0; round < rounds; ++round) {
+		const std::vector<Strip> strips = StripFinder(faces, vertices).strips(longestStrip);
+		if (strips.empty())
+			break;
+		std::vector<char>              used(faces.size(), 0);
+		std::vector<std::vector<Face>> parts(faces.size());
+		for (const Strip& strip : strips) {
+			const auto& path = strip.path;
+			if (std::any_of(path.begin(), path.end(), [&](const Gate& g) { return used[g.face] != 0; }))
+				continue;
+			for (const Gate& gate : path)
+				used[gate.face] = 1;
+			Index m = middle(faces[path[0].face], path[0].side);
+			splitEnd(faces[path[0].face], path[0].side, m, parts[path[0].face]);
+			for (std::size_t k = 1; k + 1 < path.size(); ++k) {
+				const Face& q   = faces[path[k].face];
+				const Index out = path[k].side, in = (out + 2) % 4;
+				const Index last = m;
+				m                = middle(q, out);
+				parts[path[k].face].push_back({q[in], last, m, q[(in + 3) % 4]});
+				parts[path[k].face].push_back({last, q[(in + 1) % 4], q[out], m});
+			}
+			splitEnd(faces[path.back().face], path.back().side, m, parts[path.back().face]);
+		}
+		std::vector<Face> next;
+		for (std::size_t f = 0; f < faces.size(); ++f)
+			if (used[f])
+				next.insert(next.end(), parts[f].begin(), parts[f].end());
+			else
+				next.push_back(faces[f]);
+		faces = std::move(next);
+	}
+
+	PolygonMesh result;
+	result.vertices.resize(3, vertices.size());
+	result.normals.resize(3, vertices.size());
+	for (std::size_t v = 0; v < vertices.size(); ++v) {
+		result.vertices.col(v) = vertices[v];
+		result.normals.col(v)  = normals[v];
+	}
+	result.faces = NeighborLists::fromRows(faces);
+	return result;
+}
+
+PolygonMesh cleanUpQuads(
+	const PolygonMesh& mesh, std::vector<char>& onFeature, const QuadCleanupOptions& options)
+{
+	const auto cut = [](const PolygonMesh& polygons) {
+		PolygonSplitter splitter(polygons);
+		splitter.cutLargeFaces();
+		splitter.pairWithPentagons();
+		return splitter.mesh();
+	};
+	return cut(insertStrips(cut(mesh), onFeature, options.longestStrip));
+}
+
+} // namespace curvature_lines

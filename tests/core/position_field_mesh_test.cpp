@@ -1,0 +1,128 @@
+// Position field meshes of exact surfaces: topology, quads, alignment and the number of vertices.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/position_field_mesh.h"
+
+#include <map>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "exact_field.h"
+#include "sample_data/analytic_surfaces.h"
+
+namespace curvature_lines {
+namespace {
+
+samples::SampleRequest request(const std::string& surface, int points)
+{
+	samples::SampleRequest result;
+	result.surface = surface;
+	result.points  = points;
+	result.seed    = 4;
+	return result;
+}
+
+PositionFieldMeshResult
+meshOf(const test::ExactCloud& exact, double targetVertices)
+{
+	PositionFieldMeshOptions options;
+	options.targetVertices = targetVertices;
+	return buildPositionFieldMesh(exact.cloud, exact.field, {}, options);
+}
+
+// Mean angle of inner edges to the nearest principal direction, degrees.
+double meanAngle(const std::string& name, const PolygonMesh& mesh)
+{
+	const samples::AnalyticSurface&         surface = samples::surface(name);
+	std::map<std::pair<Index, Index>, int> sides;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		for (Index k = 0; k < mesh.faces[f].size(); ++k)
+			++sides[std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % mesh.faces[f].size()])];
+	double sum = 0.0, count = 0.0;
+	for (const auto& [side, faces] : sides) {
+		if (faces < 2)
+			continue;
+		const Eigen::Vector3d a = mesh.vertices.col(side.first), b = mesh.vertices.col(side.second);
+		const samples::SurfaceFrame frame = surface.frame(surface.project(0.5 * (a + b)));
+		const Eigen::Vector3d       d     = b - a;
+		const double x = std::abs(d.dot(frame.d1)), y = std::abs(d.dot(frame.d2));
+		sum += std::atan2(std::min(x, y), std::max(x, y)) * 180.0 / EIGEN_PI;
+		count += 1.0;
+	}
+	return sum / count;
+}
+
+void expectManifold(const PositionFieldMeshResult& result, int euler, int rims)
+{
+	EXPECT_EQ(result.topology.eulerCharacteristic, euler);
+	EXPECT_EQ(result.topology.components, 1);
+	EXPECT_EQ(result.topology.boundaryLoops, rims);
+	EXPECT_EQ(result.topology.nonmanifoldEdges, 0);
+	EXPECT_EQ(result.topology.nonmanifoldVertices, 0);
+	EXPECT_TRUE(result.mesh.vertices.allFinite());
+}
+
+TEST(PositionFieldMesh, TorusIsAllQuadsAlongItsLinesOfCurvature)
+{
+	const PositionFieldMeshResult result = meshOf(test::exactCloud(request("torus", 6000)), 800);
+	expectManifold(result, 0, 0);
+	EXPECT_GE(result.topology.quads, 0.995 * result.topology.faces);
+	EXPECT_NEAR(result.topology.vertices, 800, 40);
+	EXPECT_LT(meanAngle("torus", result.mesh), 0.4);
+}
+
+TEST(PositionFieldMesh, EllipsoidHasEightConesAndFewOtherFaces)
+{
+	const PositionFieldMeshResult result = meshOf(test::exactCloud(request("ellipsoid", 6000)), 800);
+	expectManifold(result, 2, 0);
+	EXPECT_GE(result.topology.quads, 0.96 * result.topology.faces);
+	EXPECT_NEAR(result.topology.vertices, 800, 40);
+	EXPECT_LT(meanAngle("ellipsoid", result.mesh), 2.5);
+}
+
+TEST(PositionFieldMesh, SphereIsCoveredByTheSmoothestField)
+{
+	const PositionFieldMeshResult result = meshOf(test::exactCloud(request("sphere", 6000)), 800);
+	expectManifold(result, 2, 0);
+	EXPECT_GE(result.topology.quads, 0.96 * result.topology.faces);
+	EXPECT_NEAR(result.topology.vertices, 800, 40);
+}
+
+TEST(PositionFieldMesh, FewVerticesStillMakeATorus)
+{
+	const test::ExactCloud exact = test::exactCloud(request("torus", 2000));
+	for (const double target : {24.0, 60.0, 200.0})
+		expectManifold(meshOf(exact, target), 0, 0);
+}
+
+TEST(PositionFieldMesh, OpenSurfacesKeepOneLoopPerRim)
+{
+	expectManifold(meshOf(test::exactCloud(request("cylinder", 5000)), 600), 0, 2);
+	expectManifold(meshOf(test::exactCloud(request("helicoid", 5000)), 600), 1, 1);
+	expectManifold(meshOf(test::exactCloud(request("plane", 3000)), 300), 1, 1);
+}
+
+TEST(PositionFieldMesh, IsTheSameForAnyNumberOfThreads)
+{
+	const test::ExactCloud exact   = test::exactCloud(request("ellipsoid", 2500));
+	const int              threads = omp_get_max_threads();
+	omp_set_num_threads(1);
+	const PositionFieldMeshResult one = meshOf(exact, 300);
+	omp_set_num_threads(3);
+	const PositionFieldMeshResult three = meshOf(exact, 300);
+	omp_set_num_threads(threads);
+	EXPECT_EQ(one.mesh.vertices, three.mesh.vertices);
+	EXPECT_EQ(one.mesh.faces.indices, three.mesh.faces.indices);
+}
+
+TEST(PositionFieldMesh, TooFewPointsGiveAnEmptyMesh)
+{
+	PointCloud few;
+	few.positions = Eigen::Matrix3Xd::Identity(3, 3);
+	few.normals   = few.positions;
+	CurvatureField field;
+	EXPECT_EQ(buildPositionFieldMesh(few, field).mesh.faceCount(), 0);
+}
+
+} // namespace
+} // namespace curvature_lines

@@ -54,7 +54,7 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 			SurfaceElement start = own;
 			start.normal         = fit.normal;
 			const SurfaceElement next =
-				LocalSurfaceFitter::ofThisThread().fitNormals(elements, same, start, radius, 1);
+				LocalSurfaceFitter::ofThisThread().fitNormals(elements, same, start, radius, 1, false);
 			if (!next.valid)
 				break;
 			fit = next;

@@ -250,7 +250,7 @@ AdaptiveSurface adaptiveSurface(
 		const CurvatureScale& scale = selection.scales[s];
 		progress.report(0.7 + 0.3 * s / double(selection.scales.size()));
 		const ScaleField field(
-			sample, scale, users, selection.noise, 1.5 * selection.smallestRadius);
+			sample, scale, users, selection.noise, 1.5 * selection.usualRadius);
 		parallelFor(static_cast<Index>(users.size()), {}, [&](Index u) {
 			const auto [i, share]        = users[u];
 			EdgeNearby           edge;
@@ -268,7 +268,7 @@ AdaptiveSurface adaptiveSurface(
 				surface.feature[order[i]] = 0.0;
 				shares[i]                 = 0.0;
 			}
-			surface.feature[order[i]] += share * featureStrength(edge, selection.smallestRadius);
+			surface.feature[order[i]] += share * featureStrength(edge, selection.usualRadius);
 			mixed.position += share * element.position;
 			mixed.normal += share * element.normal;
 			mixed.shape += share * element.shape;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "probe_components.h"
 #include "quantile.h"
 
 namespace curvature_lines {
@@ -18,6 +19,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr Index  firstCount   = 42;  // points in the smallest ball
 constexpr Index  smallestCount = 14; // of a tiny cloud
+constexpr Index  countedRadii  = 60;
+constexpr double denseShare    = 0.1;
+constexpr double mostFiner     = 12.0; // levels
 constexpr double ladderStep   = 1.3;
 constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
 constexpr double largestNormalRadius = 0.36;
@@ -32,6 +36,7 @@ constexpr double trim            = 0.05;
 constexpr Index  minPoolPoints = 1280;
 constexpr Index  minPoolProbes = 32;
 constexpr Index  errorProbes = 24;
+constexpr Index  minComponent = 128; // probes of a component that is a cloud of its own
 constexpr double medianOfChi2 = 0.79;  // over the mean, of three squares
 constexpr Index  poolStride     = 4; // pools of neighbouring probes hardly differ
 constexpr Index  hopelessStride = 32;
@@ -265,15 +270,15 @@ double varianceAround(
 	return variance;
 }
 
-double radiusHolding(const PointSample& sample, Index count)
+std::vector<double> radiiHolding(const PointSample& sample, Index count)
 {
 	std::vector<double> radii;
-	for (Index i = 0; i < std::min<Index>(sample.cloud.size(), 60); ++i) {
+	for (Index i = 0; i < std::min<Index>(sample.cloud.size(), countedRadii); ++i) {
 		const Eigen::Vector3d position = sample.cloud.positions.col(i);
 		const auto            near     = sample.search.nearest(position, count);
 		radii.push_back((sample.cloud.positions.col(near.back()) - position).norm());
 	}
-	return medianOf(radii);
+	return radii;
 }
 
 // The residual of quadrics in the smallest balls that reach beyond the noisy layer.
@@ -427,16 +432,23 @@ ScaleSelection selectScales(
 	const Index n      = sample.cloud.size();
 	const Index probes = std::min(n, std::clamp<Index>(n / 20, options.minProbes, options.maxProbes));
 	ScaleSelection selection;
-	selection.smallestRadius =
-		radiusHolding(sample, std::clamp<Index>(n / 4, smallestCount, firstCount));
+	const std::vector<double> radii =
+		radiiHolding(sample, std::clamp<Index>(n / 4, smallestCount, firstCount));
+	selection.usualRadius = medianOf(radii);
+	// Parts much denser than the rest have finer levels.
+	const double finer = std::min(
+		mostFiner,
+		std::floor(
+			std::log(selection.usualRadius / quantileOf(radii, denseShare)) / std::log(ladderStep)));
+	const double smallest =
+		finer > 1.0 ? selection.usualRadius * std::pow(ladderStep, -finer) : selection.usualRadius;
 	const int levels = std::max(
-		1,
-		1 + int(std::log(largestHeightRadius / selection.smallestRadius) / std::log(ladderStep)));
+		1, 1 + int(std::log(largestHeightRadius / smallest) / std::log(ladderStep)));
 
-	selection.noise = noiseOf(sample, selection.smallestRadius, levels);
+	selection.noise = noiseOf(sample, smallest, levels);
 	ScaleTrials run(sample, probes, selection.noise);
 	for (int level = levels - 1; level >= 0; --level) {
-		run.run(selection.smallestRadius * std::pow(ladderStep, level), level);
+		run.run(smallest * std::pow(ladderStep, level), level);
 		progress.report(double(levels - level) / levels);
 		if (level > 0 && run.hopelessBelow(level))
 			break;
@@ -447,38 +459,49 @@ ScaleSelection selectScales(
 	selection.positions = run.positions();
 
 	const std::vector<Index> inner =
-		innerProbes(trials, std::sqrt(selection.smallestRadius * largestHeightRadius));
+		innerProbes(trials, std::sqrt(selection.usualRadius * largestHeightRadius));
 	const RiskOfPool whole(trials, inner);
 	selection.mixtures.assign(1, mixtureOf(whole));
 	if (!(whole.risk()[argmin(whole.risk())] < infinity)) {
 		// Too few points for two halves: a quadric through what there is.
-		selection.scales.push_back({{selection.smallestRadius, 2}, 0.0, 0, 0});
+		selection.scales.push_back({{selection.usualRadius, 2}, 0.0, 0, 0});
 		ScaleMixture only;
 		only.weights = {{int(trials.size()), 1.0}};
 		selection.mixtures.assign(1, only);
 	}
-	Eigen::Matrix3Xd innerPositions(3, inner.size());
-	for (std::size_t k = 0; k < inner.size(); ++k)
-		innerPositions.col(k) = selection.positions.col(inner[k]);
-	const NeighborSearch search(innerPositions);
+	const std::deque<ProbeComponent> components = connectedComponents(selection.positions, inner);
+	std::vector<Index> componentOf(probes, -1);
+	for (std::size_t c = 0; c < components.size(); ++c)
+		for (const Index p : components[c].probes())
+			componentOf[p] = Index(c);
+	const ProbeComponent everyone(selection.positions, inner);
 	// From large pools to small ones: what a larger pool knows is not given up for what a smaller one
 	// merely thinks.
-	const Index smallest =
+	const Index smallestPool =
 		std::max(minPoolProbes, static_cast<Index>(std::int64_t(minPoolPoints) * probes / n));
+	std::vector<RiskOfPool> risksOf;
+	for (const ProbeComponent& component : components)
+		risksOf.push_back(
+			components.size() > 1 && component.size() >= minComponent ?
+				RiskOfPool(trials, component.probes()) :
+				whole);
 	Eigen::Matrix3Xd asked(3, (probes + poolStride - 1) / poolStride);
 	for (Index a = 0; a < asked.cols(); ++a)
 		asked.col(a) = selection.positions.col(a * poolStride);
 	std::vector<ScaleMixture> mixtures(asked.cols(), selection.mixtures[0]);
 	parallelFor(static_cast<Index>(asked.cols()), {}, [&](Index a) {
-		std::size_t chosen = argmin(whole.risk());
-		for (const Index size : {4 * smallest, smallest}) {
-			if (size >= static_cast<Index>(inner.size()))
+		const Index           c         = componentOf[everyone.nearest(asked.col(a), 1)[0]];
+		const ProbeComponent& component = components[c];
+		const RiskOfPool&     base      = risksOf[c];
+		std::size_t           chosen    = argmin(base.risk());
+		if (components.size() > 1 && base.risk()[chosen] < infinity)
+			mixtures[a] = mixtureOf(base);
+		for (const Index size : {4 * smallestPool, smallestPool}) {
+			if (size >= static_cast<Index>(inner.size()) || 2 * component.size() < size)
 				continue;
-			std::vector<Index> pool;
-			for (const Index k : search.nearest(asked.col(a), size))
-				pool.push_back(inner[k]);
-			const RiskOfPool  around(trials, pool);
-			const std::size_t other = argmin(around.risk());
+			const std::vector<Index> pool = component.nearest(asked.col(a), size);
+			const RiskOfPool         around(trials, pool);
+			const std::size_t        other = argmin(around.risk());
 			if (around.risk()[other] < switchRatio * around.risk()[chosen]) {
 				chosen      = other;
 				mixtures[a] = mixtureOf(around);

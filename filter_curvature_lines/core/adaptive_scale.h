@@ -23,7 +23,7 @@ struct ScaleSelection {
 	std::vector<CurvatureScale> scales;    // all candidates
 	Eigen::Matrix3Xd            positions; // where the mixtures hold
 	std::vector<ScaleMixture>   mixtures;  // one per position
-	double                      smallestRadius = 0.0; // where the ladder starts
+	double                      usualRadius    = 0.0; // of the balls that hold just enough points
 	double                      noise          = 0.0; // standard deviation of heights (length)
 };
 

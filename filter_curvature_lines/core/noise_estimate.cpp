@@ -18,6 +18,7 @@ constexpr Index  fewestSites  = 2000;
 constexpr Index  mostSites    = 8000;
 constexpr Index  sitesPerPool = 64;
 constexpr Index  sitesPerPoint = 8;
+constexpr Index  fewestPools  = 20; // in fewer, every pool may reach an edge
 constexpr double lowestQuarter = 0.25; // belongs to patches off the edges
 constexpr double evenness     = 1.6;   // of the quantiles below: what pools differ by when the noise is even
 constexpr double tail         = 0.05;
@@ -97,7 +98,8 @@ public:
 		const double        low = quantileInPlace(sorted, tail);
 		const double        high = quantileInPlace(sorted, 1.0 - tail);
 		const double        median = std::max(minNoise, medianInPlace(sorted));
-		if (high <= evenness * low || high <= minNoise)
+		const bool          few = sites() < fewestPools * sitesPerPool;
+		if (few || high <= evenness * low || high <= minNoise)
 			return std::vector<double>(n, std::max(minNoise, everywhere()));
 		std::vector<double> noise(n);
 		parallelFor(n, {}, [&](Index i) {
@@ -150,6 +152,32 @@ private:
 };
 
 } // namespace
+
+std::vector<double>
+localSpacing(const PointCloud& cloud, const SpatialOrder& order, const Progress& progress)
+{
+	constexpr Index      k = 16, averaged = 32, thinning = 8;
+	const Index          n = cloud.size();
+	const NeighborSearch search(cloud.positions);
+	std::vector<double>  raw(n), smooth(n);
+	parallelFor(n, progress.sub(0.0, 0.5, "Finding neighbors"), [&](Index i) {
+		const std::vector<Index> near = search.nearest(cloud.positions.col(i), k + 1);
+		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
+		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
+	});
+	const std::vector<Index> sample =
+		order.sample(std::max(std::min(n, averaged), n / thinning));
+	const Eigen::Matrix3Xd places = columnsOf(cloud.positions, sample);
+	const NeighborSearch   sampleSearch(places);
+	parallelFor(n, progress.sub(0.5, 1.0, "Finding neighbors"), [&](Index i) {
+		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
+		double                   sum  = 0.0;
+		for (const Index j : near)
+			sum += std::log(raw[sample[j]]);
+		smooth[i] = std::exp(sum / double(near.size()));
+	});
+	return smooth;
+}
 
 std::vector<double> estimateNoise(BlendInput input, const Progress& progress)
 {

@@ -1,5 +1,8 @@
 // The whole pipeline (A09 fig. 1): outliers out, points denoised, curvature, directions, lines, mesh.
-// A09 estimates curvature first; robust outlier rejection and denoising need none, so that it is estimated once.
+// A09 estimates curvature first; robust outlier rejection and denoising need none, so that it is estimated
+// once. The stages share their engine (local_polynomial.h, surface_patch.h) and the order of the points
+// (shuffled_order.h), but neither search trees nor noise: every stage sees other positions, and what large
+// voters miss, detail included, is no measure of what small patches call noise.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -28,12 +28,13 @@ constexpr double bentStart       = 0.8; // of the free radius
 constexpr double maxBentRadius   = 25.0;
 constexpr double bentTolerance   = 1.01;
 // Scores as good as the same: the wider patch has less variance.
-constexpr double bentTie         = 1.0003;
+constexpr double bentTie         = 1.0007;
 constexpr double gatedStep       = 1.3;
 constexpr double maxGatedRadius  = 17.0;
 constexpr double gatedTolerance  = 1.015;
 constexpr double minPilotRadius  = 3.2;
 constexpr double pilotNoise      = 8.0; // noise units across which an edge is told from noise
+constexpr double minFlagRadius   = 5.0; // edges have to show
 constexpr double maxFlagRadius   = 6.3;
 constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
 constexpr double radiusExponent  = 0.2;
@@ -59,34 +60,6 @@ constexpr double sharpGain       = 0.3; // above it, it is an edge
 double quantile(std::vector<double> values, double share)
 {
 	return quantileInPlace(values, share);
-}
-
-// Side of the square that holds one point, averaged over some hundred neighbours: radii of patches
-// that overlap have to be alike.
-std::vector<double>
-localSpacing(const PointCloud& cloud, const SpatialOrder& order, const Progress& progress)
-{
-	constexpr Index      k = 16, averaged = 32, thinning = 8;
-	const Index          n = cloud.size();
-	const NeighborSearch search(cloud.positions);
-	std::vector<double>  raw(n), smooth(n);
-	parallelFor(n, progress.sub(0.0, 0.5, stage), [&](Index i) {
-		const std::vector<Index> near = search.nearest(cloud.positions.col(i), k + 1);
-		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
-		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
-	});
-	const std::vector<Index> sample =
-		order.sample(std::max(std::min(n, averaged), n / thinning));
-	const Eigen::Matrix3Xd places = columnsOf(cloud.positions, sample);
-	const NeighborSearch   sampleSearch(places);
-	parallelFor(n, progress.sub(0.5, 1.0, stage), [&](Index i) {
-		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
-		double                   sum  = 0.0;
-		for (const Index j : near)
-			sum += std::log(raw[sample[j]]);
-		smooth[i] = std::exp(sum / double(near.size()));
-	});
-	return smooth;
 }
 
 // Ladders end where the data say: every rung takes a share of what is left of their time.
@@ -215,7 +188,7 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 	BlendOptions options;
 	options.purity = strictPurity;
 	options.radius = std::clamp(
-		pilotNoise * m_noise / m_spacing, minPilotRadius, std::max(minPilotRadius, maxFlagRadius));
+		pilotNoise * m_noise / m_spacing, minFlagRadius, maxFlagRadius);
 	options.radius         = std::max(options.radius, m_firstRadius);
 	const PatchBlend blend = blendPatches(m_input, m_start, options, m_test, progress);
 	std::vector<Index> plain;

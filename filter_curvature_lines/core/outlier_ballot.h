@@ -1,0 +1,51 @@
+// The votes about one point and what they come to (in place of counting votes in A09 section 4.1).
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "outlier_voter.h"
+
+namespace curvature_lines {
+
+// A displacement to a voter's surface: unlike heights, displacements need no agreement about the sign of
+// normals.
+struct Vote {
+	double          distance, weight;
+	Eigen::Vector3d toSurface;
+};
+
+struct Ballot {
+	std::vector<Vote> votes, rim;
+	double            weight = 0.0, rimWeight = 0.0;
+	bool              proper = false; // a voter that knows the place and sees no edge
+	double            noise = 0.0, spacing = 0.0, nearness = 0.0;
+
+	void clear()
+	{
+		votes.clear();
+		rim.clear();
+		weight = rimWeight = noise = spacing = nearness = 0.0;
+		proper                                          = false;
+	}
+};
+
+// What the votes say about one point.
+struct Verdict {
+	Eigen::Vector3d toSurface = Eigen::Vector3d::Zero();
+	double          deviation = 0.0; // noise units
+	double          against   = 0.0; // share of the votes
+	double          noise = 0.0, spacing = 0.0;
+	Index           votes  = 0;
+	bool            lonely = false;
+};
+
+// What the voter says about point `p`, if it knows the place.
+void addVote(
+	Ballot&                ballot,
+	const OutlierVoter&    voter,
+	const Eigen::Vector3d& centre,
+	const Eigen::Vector3d& p);
+
+// `crowding`: distance of the point to its neighbour number crowdSize. Sorts the votes.
+Verdict countVotes(Ballot& ballot, double crowding, double sensitivity);
+
+} // namespace curvature_lines

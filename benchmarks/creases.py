@@ -14,7 +14,7 @@ import measures
 from measures import analytic_surfaces
 
 PLANE_FIT_NEIGHBORS = 16
-DENSITY = 400  # points per unit length that stand for a true edge
+DENSITY = 4000  # points per unit length that stand for a true edge
 SHAPES = [("cube", 600), ("cube", 6000), ("cube", 60000), ("l_block", 6000), ("capped_cylinder", 6000)]
 EDGES_AND_CORNERS = {"cube": (12, 8), "l_block": (18, 12), "capped_cylinder": (2, 0)}
 SMOOTH = ["torus", "sphere", "ellipsoid", "helicoid", "capsule", "cylinder", "bent_sheet", "plane"]

@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double parallel  = 0.9;  // cosine
 constexpr double minLength = 5.0;  // spacings; a shorter curve needs corners at both ends
+constexpr int    maxRounds = 20;   // each drops a stub; three or so are usual
 constexpr double pull      = 1e-3; // of a corner to the ends of its curves, if the faces leave it free
 
 // The point nearest to all faces of the vertices.
@@ -46,11 +47,12 @@ public:
 
 	void build()
 	{
+		int round = 0;
 		do {
 			joinGaps(m_tracing, m_step, m_traces);
 			findCorners();
 			cutAtCorners();
-		} while (dropStubs());
+		} while (dropStubs() && ++round < maxRounds);
 	}
 
 	Creases result(double spacing) const;
@@ -163,9 +165,9 @@ void Network::cutAtCorners()
 	std::vector<CreaseTrace>          pieces;
 	std::vector<std::array<Index, 2>> corners;
 	for (std::size_t t = 0; t < m_traces.size(); ++t) {
-		CreaseTrace&                           trace = m_traces[t];
-		auto                                   path  = trace.vertices;
-		std::vector<std::pair<Index, Index>>   cuts; // vertex, corner
+		CreaseTrace&                         trace = m_traces[t];
+		auto                                 path  = trace.vertices;
+		std::vector<std::pair<Index, Index>> cuts; // vertex, corner
 		for (Index c = 0; c < static_cast<Index>(m_corners.size()); ++c) {
 			if (m_corner[t][0] == c || m_corner[t][1] == c)
 				continue;
@@ -238,12 +240,11 @@ std::vector<CreasePoint> Network::betweenCorners(Index trace) const
 {
 	std::vector<CreasePoint> path = m_traces[trace].vertices;
 	for (const int side : {0, 1}) {
-		std::reverse(path.begin(), path.end());
-		// Now the back first, as it was: side 0 works on the front at the end of the list.
+		std::reverse(path.begin(), path.end()); // first the front comes last, then the back
 		const Index corner = m_corner[trace][side];
 		if (corner < 0)
 			continue;
-		const double      outward = side == 0 ? -1.0 : 1.0;
+		const double outward = side == 0 ? -1.0 : 1.0;
 		while (path.size() > 1 &&
 			   (m_corners[corner] - path.back().position).dot(outward * path.back().tangent) < 0.4 * m_step)
 			path.pop_back();

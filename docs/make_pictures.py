@@ -1,20 +1,118 @@
-# Puts the demo's pictures of the bunny side by side for the README: run scripts/demo.sh, then
-# .venv/bin/python docs/make_pictures.py
+# The pictures in docs/: `.venv/bin/python docs/make_pictures.py pipeline` after scripts/demo.sh, and
+# `.venv/bin/python docs/make_pictures.py gallery FOLDER` with a folder of scans (docs/gallery.md says which).
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes docs/pipeline.png from out/bunny_{cloud,lines,mesh}.png."""
+"""Writes docs/pipeline.png from out/bunny_{cloud,lines,mesh}.png, or docs/gallery_*.png from scans."""
 
+import argparse
 from pathlib import Path
 
+import pymeshlab
+import pymeshlab_curvature_lines  # noqa: F401
 from PIL import Image
+from pymeshlab_curvature_lines.render import render
 
-checkout = Path(__file__).resolve().parent.parent
-pictures = [Image.open(checkout / "out" / f"bunny_{stage}.png").convert("RGB") for stage in ("cloud", "lines", "mesh")]
-# Margins are cut alike so that the three stay in register.
-box = (190, 0, 1010, 900)
-width, height = box[2] - box[0], box[3] - box[1]
-strip = Image.new("RGB", (width * len(pictures), height), "white")
-for place, picture in enumerate(pictures):
-    strip.paste(picture.crop(box), (place * width, 0))
-strip.resize((strip.width // 2, strip.height // 2), Image.Resampling.LANCZOS).save(
-    checkout / "docs" / "pipeline.png", optimize=True
-)
+CHECKOUT = Path(__file__).resolve().parent.parent
+DOCS, OUT = CHECKOUT / "docs", CHECKOUT / "out"
+PANEL = (900, 780)
+RANGE_MAP, ANGEL, DRAGON = "meshlab_lato270_rawscan.ply", "angel_rawscan.obj", "dragon_vrip.ply"
+FANDISK, TWELVE = "fandisk_noise0.3.obj", "twelve_impulsive0.5.obj"
+VIEWS = {FANDISK: ((-0.6, 0.5, 1.0), (0.0, 1.0, 0.0)), TWELVE: ((0.4, 0.3, 1.0), (0.0, 1.0, 0.0))}
+
+
+def write_strips(name: str, rows: list[list[Path]], width: int) -> None:
+    """Rows of pictures of one size as one picture, in few enough colours to stay small."""
+    pictures = [[Image.open(path).convert("RGB") for path in row] for row in rows]
+    across, down = pictures[0][0].size
+    sheet = Image.new("RGB", (across * len(pictures[0]), down * len(pictures)), "white")
+    for line, row in enumerate(pictures):
+        for place, picture in enumerate(row):
+            sheet.paste(picture, (across * place, down * line))
+    sheet = sheet.resize((width, width * sheet.height // sheet.width), Image.Resampling.LANCZOS)
+    sheet.quantize(200, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(DOCS / f"{name}.png", optimize=True)
+
+
+def pipeline() -> None:
+    pictures = [Image.open(OUT / f"bunny_{stage}.png").convert("RGB") for stage in ("cloud", "lines", "mesh")]
+    # Margins are cut alike so that the three stay in register.
+    box = (190, 0, 1010, 900)
+    width, height = box[2] - box[0], box[3] - box[1]
+    strip = Image.new("RGB", (width * len(pictures), height), "white")
+    for place, picture in enumerate(pictures):
+        strip.paste(picture.crop(box), (place * width, 0))
+    strip.resize((strip.width // 2, strip.height // 2), Image.Resampling.LANCZOS).save(
+        DOCS / "pipeline.png", optimize=True
+    )
+
+
+def loaded(path: Path) -> pymeshlab.MeshSet:
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(path))
+    meshes.meshing_remove_unreferenced_vertices()
+    meshes.compute_normal_per_vertex()
+    return meshes
+
+
+def forget_triangles(meshes: pymeshlab.MeshSet) -> None:
+    cloud = meshes.current_mesh()
+    meshes.add_mesh(pymeshlab.Mesh(cloud.vertex_matrix(), v_normals_matrix=cloud.vertex_normal_matrix()))
+
+
+def cleaning(path: Path) -> list[Path]:
+    """The surface as it came with its outliers in red, and without them after denoising.
+
+    The filters see points only. The triangles show what became of them, unless too few are left to.
+    """
+    view, up = VIEWS.get(path.name, (None, None))
+    before, after = OUT / f"{path.stem}_before.png", OUT / f"{path.stem}_after.png"
+    meshes = loaded(path)
+    if path.name == TWELVE:
+        forget_triangles(meshes)
+    framed = meshes.current_mesh().vertex_matrix()
+    style = {"view": view, "up": up, "size": PANEL, "framed": framed, "mesh_edges": False}
+    meshes.compute_selection_point_cloud_outliers_by_curvature()
+    outliers = int(meshes.current_mesh().vertex_selection_array().sum())
+    render(before, meshes.current_mesh(), **style)
+    meshes.meshing_remove_selected_vertices()
+    report = meshes.apply_coord_point_cloud_robust_denoising()
+    render(after, meshes.current_mesh(), **style)
+    print(f"{path.name}: {outliers} of {len(framed)} points are outliers, the others moved {report['moved_rms']:.3g} (RMS)")
+    return [before, after]
+
+
+def curvature(path: Path) -> Path:
+    """The points alone, coloured by their mean curvature."""
+    meshes = loaded(path)
+    forget_triangles(meshes)
+    meshes.compute_curvature_robust_per_vertex()
+    picture = OUT / f"{path.stem}_curvature.png"
+    render(picture, meshes.current_mesh(), size=PANEL)
+    return picture
+
+
+def gallery(folder: Path, topics: list[str]) -> None:
+    OUT.mkdir(exist_ok=True)
+    if "scans" in topics:
+        write_strips("gallery_scans", [cleaning(folder / name) for name in (RANGE_MAP, ANGEL)], 1400)
+    if "meshes" in topics:
+        write_strips("gallery_meshes", [cleaning(folder / name) for name in (FANDISK, TWELVE)], 1200)
+    if "curvature" in topics:
+        write_strips("gallery_curvature", [[curvature(folder / name) for name in (RANGE_MAP, ANGEL, DRAGON)]], 1600)
+
+
+def main() -> None:
+    topics = ["scans", "meshes", "curvature"]
+    parser = argparse.ArgumentParser(description=__doc__)
+    kinds = parser.add_subparsers(dest="kind", required=True)
+    kinds.add_parser("pipeline", help="from what scripts/demo.sh left in out/")
+    of_scans = kinds.add_parser("gallery", help="from a folder of scans")
+    of_scans.add_argument("folder", type=Path)
+    of_scans.add_argument("topics", nargs="*", metavar="TOPIC", help=f"{', '.join(topics)}; default: all")
+    given = parser.parse_args()
+    if given.kind == "pipeline":
+        pipeline()
+    else:
+        gallery(given.folder, given.topics or topics)
+
+
+if __name__ == "__main__":
+    main()

@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonCore import vtkLogger
 # Without an X server VTK finds another way to draw by itself, but says so each time.
 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
 
-_SURFACE, _POINTS, _EDGES = "#d8dee6", "#a9bfd8", "#1f2d3d"
+_SURFACE, _POINTS, _EDGES, _SELECTED = "#d8dee6", "#a9bfd8", "#1f2d3d", "#e0201b"
 _FAMILIES = ["#c8442e", "#2e62c8"]  # along PD1, along PD2
 _LEGEND = {"title": "", "vertical": True, "position_x": 0.93, "position_y": 0.3, "width": 0.03, "height": 0.4}
 
@@ -26,25 +26,34 @@ def render(
     view: Sequence[float] | None = None,
     up: Sequence[float] | None = None,
     size: tuple[int, int] = (1200, 900),
+    framed: np.ndarray | None = None,
+    mesh_edges: bool = True,
 ) -> None:
     """Writes one picture of the layers as a PNG file.
 
     Meshes are drawn with the edges of their polygons, or plainly when lines lie on them; lines in red along the
     first principal direction and blue along the second; clouds as small discs, coloured by their quality when they
-    have one. ``view`` points from the model to the viewer; the default looks along the model's thinnest side.
+    have one; selected vertices as red dots. ``view`` points from the model to the viewer; the default looks along the
+    model's thinnest side. ``framed``: points that fill the picture, those of the layers by default.
     """
     plotter = pyvista.Plotter(off_screen=True, window_size=size)
     plotter.set_background("white")
     with_lines = any(layer.edge_number() for layer in layers)
     for layer in layers:
         if layer.face_number():
-            _add_mesh(plotter, layer, edges=not with_lines)
+            _add_mesh(plotter, layer, edges=mesh_edges and not with_lines)
         elif layer.edge_number():
             _add_lines(plotter, layer)
         else:
             _add_cloud(plotter, layer)
+        if (selected := layer.vertex_selection_array()).any():
+            plotter.add_points(
+                layer.vertex_matrix()[selected], color=_SELECTED, point_size=9, lighting=False
+            )
     plotter.enable_anti_aliasing("ssaa")
-    _place_camera(plotter, np.concatenate([layer.vertex_matrix() for layer in layers]), view, up)
+    if framed is None:
+        framed = np.concatenate([layer.vertex_matrix() for layer in layers])
+    _place_camera(plotter, framed, view, up)
     plotter.screenshot(str(path))
     plotter.close()
 

@@ -22,8 +22,12 @@ struct BoundedPriority {
 	double operator()(const Front& front, CellHandle& cell, const int& facet) const
 	{
 		for (int a = 1; a <= 3; ++a) {
-			const auto   p     = cell->vertex((facet + a) % 4);
-			const auto   q     = cell->vertex((facet + a % 3 + 1) % 4);
+			const auto p = cell->vertex((facet + a) % 4);
+			const auto q = cell->vertex((facet + a % 3 + 1) % 4);
+			// CGAL helps itself with a vertex of no number when all points lie in a plane.
+			const auto count = static_cast<std::size_t>(longest.size());
+			if (p->id() >= count || q->id() >= count)
+				return front.infinity();
 			const double bound = std::max(longest[p->id()], longest[q->id()]);
 			if (CGAL::squared_distance(p->point(), q->point()) > bound * bound)
 				return front.infinity();

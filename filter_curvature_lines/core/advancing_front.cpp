@@ -16,15 +16,20 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 // CGAL's own priority, the radius of the smallest empty ball, unless an edge is too long.
 struct BoundedPriority {
-	double longestSquared;
+	const Eigen::VectorXd& longest;
 
 	template<class Front, class CellHandle>
 	double operator()(const Front& front, CellHandle& cell, const int& facet) const
 	{
 		for (int a = 1; a <= 3; ++a) {
-			const auto& p = cell->vertex((facet + a) % 4)->point();
-			const auto& q = cell->vertex((facet + a % 3 + 1) % 4)->point();
-			if (CGAL::squared_distance(p, q) > longestSquared)
+			const auto p = cell->vertex((facet + a) % 4);
+			const auto q = cell->vertex((facet + a % 3 + 1) % 4);
+			// CGAL helps itself with a vertex of no number when all points lie in a plane.
+			const auto count = static_cast<std::size_t>(longest.size());
+			if (p->id() >= count || q->id() >= count)
+				return front.infinity();
+			const double bound = std::max(longest[p->id()], longest[q->id()]);
+			if (CGAL::squared_distance(p->point(), q->point()) > bound * bound)
 				return front.infinity();
 		}
 		return front.smallest_radius_delaunay_sphere(cell, facet);
@@ -33,7 +38,7 @@ struct BoundedPriority {
 
 } // namespace
 
-std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, double longestEdge)
+std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdge)
 {
 	std::vector<Triangle> triangles;
 	if (points.cols() < 4)
@@ -47,7 +52,7 @@ std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, double long
 		input.begin(),
 		input.end(),
 		std::back_inserter(found),
-		BoundedPriority{longestEdge * longestEdge});
+		BoundedPriority{longestEdge});
 	triangles.reserve(found.size());
 	for (const auto& t : found)
 		triangles.push_back(

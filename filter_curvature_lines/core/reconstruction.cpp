@@ -13,7 +13,8 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index fewestPoints = 20; // as prepareCloud()
+constexpr Index  fewestPoints   = 20; // as prepareCloud()
+constexpr double shortestCrease = 5.0; // of those that fade out, in edges of the mesh
 
 class StageClock {
 public:
@@ -108,6 +109,20 @@ void traceAndFill(
 	clock.book("mesh");
 }
 
+// Of the surface a point stands for: six neighbours around make a hexagon of area sqrt(3) / 2 h^2.
+double areaOf(const MinimumNeighborhoods& minimum, Index i)
+{
+	return 0.5 * std::sqrt(3.0) * minimum.spacing[i] * minimum.spacing[i];
+}
+
+double areaOf(const MinimumNeighborhoods& minimum)
+{
+	double sum = 0.0;
+	for (Index i = 0; i < static_cast<Index>(minimum.spacing.size()); ++i)
+		sum += areaOf(minimum, i);
+	return sum;
+}
+
 // Crossings of lines that keep the published distances for epsilon.
 double crossingsFor(
 	const PointCloud&           cloud,
@@ -117,9 +132,8 @@ double crossingsFor(
 {
 	const LineSpacing spacing = chooseLineSpacing(cloud, field, minimum, tracing, 0.0);
 	double            sum     = 0.0;
-	for (Index i = 0; i < cloud.size(); ++i) // six neighbours around: a hexagon of area sqrt(3) / 2 h^2
-		sum += 0.5 * std::sqrt(3.0) * std::pow(minimum.spacing[i], 2) /
-			   (spacing.distance[0][i] * spacing.distance[1][i]);
+	for (Index i = 0; i < cloud.size(); ++i)
+		sum += areaOf(minimum, i) / (spacing.distance[0][i] * spacing.distance[1][i]);
 	return sum;
 }
 
@@ -135,15 +149,6 @@ void fillPositionField(
 	result.creases = findCreases(
 		result.cloud, minimum, options.creases, progress.sub(0.0, 0.2, "Finding creases"));
 	clock.book("creases");
-	std::vector<FeatureLine> lines;
-	for (const CreaseCurve& curve : result.creases.curves) {
-		lines.push_back({curve.positions, curve.closed});
-		if (curve.start >= 0)
-			lines.back().points.leftCols<1>() = result.creases.corners[curve.start].position;
-		if (curve.end >= 0)
-			lines.back().points.rightCols<1>() = result.creases.corners[curve.end].position;
-	}
-
 	PositionFieldMeshOptions meshing;
 	meshing.targetVertices = options.tracing.targetVertices;
 	if (meshing.targetVertices <= 0.0)
@@ -151,6 +156,21 @@ void fillPositionField(
 			options.tracing.epsilon > 0.0 ?
 				std::max(8.0, crossingsFor(result.cloud, result.field, minimum, options.tracing)) :
 				double(automaticTargetVertices(result.cloud.size()));
+	const double edge = std::sqrt(areaOf(minimum) / meshing.targetVertices);
+
+	std::vector<FeatureLine> lines;
+	for (const CreaseCurve& curve : result.creases.curves) {
+		// Short wrinkles of a scan would only disturb the faces around.
+		const bool fades = curve.start < 0 || curve.end < 0;
+		if (fades && !curve.closed && curve.length() < shortestCrease * edge)
+			continue;
+		lines.push_back({curve.positions, curve.closed});
+		if (curve.start >= 0)
+			lines.back().points.leftCols<1>() = result.creases.corners[curve.start].position;
+		if (curve.end >= 0)
+			lines.back().points.rightCols<1>() = result.creases.corners[curve.end].position;
+	}
+
 	meshing.anisotropy = options.anisotropy;
 	meshing.noise      = result.noise;
 	meshing.mesh       = options.mesh;

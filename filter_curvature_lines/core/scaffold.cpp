@@ -25,6 +25,7 @@ using Eigen::Vector3d;
 constexpr Index  spacingProbes     = 2000;
 constexpr Index  spacingNeighbors  = 6;
 constexpr double poissonSpacing    = 0.977; // mean distance to six neighbours of random points, density 1
+constexpr double evenSites         = 1.5;   // mean distance to six neighbours, thinned to distance 1
 constexpr double trianglesPerFace  = 3.0;   // thinning distances in an edge of the quad mesh
 // Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
 // cuts off the corners where creases meet.
@@ -32,6 +33,7 @@ constexpr double creaseStep        = 0.93;
 constexpr double noiseClearance    = 2.0;   // noise units: the denoised points beside a crease are round
 constexpr double coarser           = 1.5;   // thinning of the next attempt, over this one
 constexpr int    attempts          = 3;
+constexpr Index  rimFlaws          = 5;     // a rim counts as so many defects
 constexpr double toleratedDefects  = 0.002; // per vertex
 
 double spacingOf(const PointSample& sample)
@@ -156,6 +158,21 @@ Sites chooseSites(
 	return sites;
 }
 
+// Distance of the neighbours around every site; `distance` in an evenly sampled cloud, more where it is sparse.
+Eigen::VectorXd localDistances(const Eigen::Matrix3Xd& points, double distance)
+{
+	const NeighborSearch search(points);
+	Eigen::VectorXd      result(points.cols());
+	parallelFor(static_cast<Index>(points.cols()), {}, [&](Index i) {
+		const Vector3d p   = points.col(i);
+		double         sum = 0.0;
+		for (const Index j : search.nearest(p, spacingNeighbors + 1))
+			sum += (points.col(j) - p).norm() / spacingNeighbors;
+		result[i] = std::max(distance, sum / evenSites);
+	});
+	return result;
+}
+
 // Turns every component to the side most of its normals are on.
 void orient(const TriangleMesh& mesh, const Sites& sites, const std::vector<Index>& component, std::vector<Triangle>& triangles)
 {
@@ -227,7 +244,8 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	scaffold.spacing = distance;
 	scaffold.cell    = cell;
 
-	const std::vector<Triangle> front = advancingFront(sites.points, options.longestEdge * distance);
+	const std::vector<Triangle> front =
+		advancingFront(sites.points, options.longestEdge * localDistances(sites.points, distance));
 	std::vector<Index>    copies;
 	std::vector<Triangle> triangles =
 		manifoldPart(front, static_cast<Index>(sites.points.cols()), copies);
@@ -329,16 +347,18 @@ Scaffold buildScaffold(
 			0.0;
 
 	Scaffold best;
+	Index    fewest   = 0;
 	double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
 	for (int k = 0; k < attempts; ++k, distance *= coarser) {
 		progress.report(double(k) / attempts);
 		Scaffold next = attempt(
 			chooseSites(sample, order, creases, distance, options), distance, cell, options);
-		const bool better = k == 0 || (next.mesh.triangleCount() > 0 &&
-									   next.defects + next.lostCreaseEdges <
-										   (best.defects + best.lostCreaseEdges) / 2);
-		if (better)
-			best = std::move(next);
+		// True rims are in every attempt, false ones are not.
+		const Index flaws = next.defects + next.lostCreaseEdges + rimFlaws * static_cast<Index>(next.mesh.rims().size());
+		if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
+			best   = std::move(next);
+			fewest = flaws;
+		}
 		if (best.defects + best.lostCreaseEdges <= toleratedDefects * best.mesh.vertexCount())
 			break;
 	}

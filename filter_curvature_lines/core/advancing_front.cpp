@@ -38,7 +38,8 @@ struct BoundedPriority {
 
 } // namespace
 
-std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdge)
+std::vector<Triangle>
+advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdge)
 {
 	std::vector<Triangle> triangles;
 	if (points.cols() < 4)
@@ -49,10 +50,7 @@ std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, const Eigen
 		input.emplace_back(points(0, i), points(1, i), points(2, i));
 	std::vector<std::array<std::size_t, 3>> found;
 	CGAL::advancing_front_surface_reconstruction(
-		input.begin(),
-		input.end(),
-		std::back_inserter(found),
-		BoundedPriority{longestEdge});
+		input.begin(), input.end(), std::back_inserter(found), BoundedPriority{longestEdge});
 	triangles.reserve(found.size());
 	for (const auto& t : found)
 		triangles.push_back(

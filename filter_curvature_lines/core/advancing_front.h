@@ -8,6 +8,7 @@ namespace curvature_lines {
 
 // Triangles without an edge longer than the `longestEdge` (N, lengths) of both its ends, sorted by their vertices; oriented alike where they
 // hang together, to either side.
-std::vector<Triangle> advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdge);
+std::vector<Triangle>
+advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdge);
 
 } // namespace curvature_lines

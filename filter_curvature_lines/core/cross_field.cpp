@@ -17,13 +17,14 @@ namespace {
 using Eigen::Vector3d;
 using SparseComplex = Eigen::SparseMatrix<Complex>;
 
-constexpr double quarter         = 0.5 * double(EIGEN_PI);
-constexpr double sureErrors      = 3.0;  // k1 - k2 below so many standard errors tells no direction
+constexpr double quarter    = 0.5 * double(EIGEN_PI);
+constexpr double sureErrors = 3.0; // k1 - k2 below so many standard errors tells no direction
 // A direction whose k1 - k2 is this many errors is smoothed over about a cell of the mesh; the more exact it
 // is, the less, down to a third of a cell.
-constexpr double cellErrors      = 45.0;
-constexpr double mostTrust       = 10.0;
-constexpr double leastRatio      = 0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
+constexpr double cellErrors = 15.0;
+constexpr double mostTrust  = 10.0;
+constexpr double leastRatio =
+	0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
 constexpr double regularization  = 1e-9;
 constexpr double eigenShift      = 1e-8;
 constexpr int    eigenIterations = 40;
@@ -52,8 +53,8 @@ void turnFrame(CrossField& field, Index v, double angle)
 SparseComplex
 smoothness(const TriangleMesh& mesh, const CrossField& frames, const Eigen::VectorXd& diagonal)
 {
-	const Eigen::VectorXd weights = mesh.cotangentWeights();
-	Eigen::VectorXd       sums    = diagonal;
+	const Eigen::VectorXd                weights = mesh.cotangentWeights();
+	Eigen::VectorXd                      sums    = diagonal;
 	std::vector<Eigen::Triplet<Complex>> entries;
 	entries.reserve(mesh.edgeCount() + mesh.vertexCount());
 	for (Index e = 0; e < mesh.edgeCount(); ++e) {
@@ -75,8 +76,8 @@ using Solver = Eigen::SimplicialLDLT<SparseComplex, Eigen::Lower>;
 Eigen::VectorXcd
 smoothest(const TriangleMesh& mesh, const CrossField& frames, const std::vector<Index>& component)
 {
-	const Index n = mesh.vertexCount();
-	Solver      solver(smoothness(mesh, frames, Eigen::VectorXd::Constant(n, eigenShift)));
+	const Index      n = mesh.vertexCount();
+	Solver           solver(smoothness(mesh, frames, Eigen::VectorXd::Constant(n, eigenShift)));
 	Eigen::VectorXcd z(n);
 	for (Index v = 0; v < n; ++v) // any start that is not orthogonal to the smoothest field
 		z[v] = std::polar(1.0, double(2.0 * EIGEN_PI) * std::fmod(0.6180339887498949 * v, 1.0));
@@ -133,20 +134,28 @@ Eigen::Vector3d transported(const Vector3d& d, const Vector3d& from, const Vecto
 Complex turned(const Complex& z, int quarters)
 {
 	switch (quarters & 3) {
-	case 1: return {-z.imag(), z.real()};
-	case 2: return -z;
-	case 3: return {z.imag(), -z.real()};
-	default: return z;
+	case 1:
+		return {-z.imag(), z.real()};
+	case 2:
+		return -z;
+	case 3:
+		return {z.imag(), -z.real()};
+	default:
+		return z;
 	}
 }
 
 FamilyImage familyBehind(int turns, int f)
 {
 	switch (turns & 3) {
-	case 1: return {1 - f, f == 0 ? 1 : -1};
-	case 2: return {f, -1};
-	case 3: return {1 - f, f == 0 ? -1 : 1};
-	default: return {f, 1};
+	case 1:
+		return {1 - f, f == 0 ? 1 : -1};
+	case 2:
+		return {f, -1};
+	case 3:
+		return {1 - f, f == 0 ? -1 : 1};
+	default:
+		return {f, 1};
 	}
 }
 
@@ -167,16 +176,16 @@ Index CrossField::singularTriangles() const
 
 DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& curvature)
 {
-	const TriangleMesh& mesh = scaffold.mesh;
-	const Index         n    = mesh.vertexCount();
-	DirectionGuide      guide;
+	const TriangleMesh&    mesh = scaffold.mesh;
+	const Index            n    = mesh.vertexCount();
+	DirectionGuide         guide;
 	const Eigen::Matrix3Xd fromTriangles = mesh.vertexNormals();
 	guide.normals                        = fromTriangles;
 	guide.directions.setZero(3, n);
 	guide.weights.setZero(n);
 	guide.onCrease.assign(n, 0);
 	const Eigen::VectorXd areas = mesh.vertexAreas();
-	const double cell = scaffold.cell > 0.0 ? scaffold.cell : scaffold.spacing;
+	const double          cell  = scaffold.cell > 0.0 ? scaffold.cell : scaffold.spacing;
 	for (Index v = 0; v < n; ++v) {
 		const Index i = scaffold.source[v];
 		if (i < 0)
@@ -190,7 +199,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 			sure < sureErrors)
 			continue;
 		const double ratio      = difference / size;
-		const double confidence = std::min(mostTrust, sure * sure / (cellErrors * cellErrors));
+		const double confidence = std::min(mostTrust, sure / cellErrors);
 		guide.weights[v]        = confidence * ratio * ratio * areas[v] / (cell * cell);
 	}
 
@@ -225,15 +234,14 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 	std::vector<char>        guided(n, 0);
 	for (Index v = 0; v < n; ++v)
 		guided[component[v]] = guided[component[v]] || guide.weights[v] > 0.0;
-	Eigen::VectorXcd z = Eigen::VectorXcd::Zero(n);
+	Eigen::VectorXcd z         = Eigen::VectorXcd::Zero(n);
 	bool             anyGuided = false, allGuided = true;
 	for (Index v = 0; v < n; ++v) {
 		anyGuided = anyGuided || guided[component[v]];
 		allGuided = allGuided && guided[component[v]];
 	}
 	if (anyGuided) {
-		const Solver solver(
-			smoothness(mesh, field, guide.weights.array() + regularization));
+		const Solver solver(smoothness(mesh, field, guide.weights.array() + regularization));
 		z = solver.solve(Eigen::VectorXcd(guide.weights.cast<Complex>()));
 	}
 	if (!allGuided && n > 0) {
@@ -255,8 +263,8 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
 		int sum = 0;
 		for (int c = 0; c < 3; ++c)
-			sum += mesh.isForward(t, c) ? field.turns[mesh.edgeOf(t, c)] :
-										  -field.turns[mesh.edgeOf(t, c)];
+			sum += mesh.isForward(t, c) ? field.turns[mesh.edgeOf(t, c)]
+										: -field.turns[mesh.edgeOf(t, c)];
 		field.index[t] = static_cast<std::uint8_t>(sum & 3);
 	}
 	return field;

@@ -21,8 +21,9 @@ struct DirectionGuide {
 };
 
 struct CrossField {
-	Eigen::Matrix3Xd  normals, d1, d2; // 3 x V: arms of the cross, d2 = n x d1; which two is arbitrary
-	std::vector<char> onCrease;        // V
+	Eigen::Matrix3Xd normals, d1,
+		d2;                     // 3 x V: arms of the cross, d2 = n x d1; which two is arbitrary
+	std::vector<char> onCrease; // V
 	// Per edge: the frame at `to` sees a direction turned by so many quarters against the frame at `from`:
 	// z_to = i^turns z_from.
 	std::vector<std::uint8_t> turns;
@@ -39,8 +40,8 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guide);
 
 // `d` turned with the smallest rotation that takes unit vector `from` to unit vector `to`.
-Eigen::Vector3d transported(
-	const Eigen::Vector3d& d, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+Eigen::Vector3d
+transported(const Eigen::Vector3d& d, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 // i^quarters z, exactly.
 Complex turned(const Complex& z, int quarters);

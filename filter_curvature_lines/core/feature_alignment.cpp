@@ -44,7 +44,7 @@ void alignSide(
 	if (along < snapShare * known)
 		return;
 	for (Index k = begin; k <= end; ++k) {
-		const Index v = rim.at(k);
+		const Index v        = rim.at(k);
 		const bool  isCorner = rim.corner[k % rim.size()] != 0;
 		if (isCorner || guide.onCrease[v]) {
 			guide.weights[v] = 0.0;
@@ -55,9 +55,9 @@ void alignSide(
 		t -= t.dot(guide.normals.col(v)) * guide.normals.col(v);
 		if (!(t.norm() > 0.1))
 			continue;
-		guide.directions.col(v)     = t.normalized();
-		guide.weights[v]            = featureWeight;
-		alignment.tangents.col(v)   = t.normalized();
+		guide.directions.col(v)   = t.normalized();
+		guide.weights[v]          = featureWeight;
+		alignment.tangents.col(v) = t.normalized();
 	}
 }
 
@@ -92,13 +92,13 @@ alignWithFeatures(const Scaffold& scaffold, const std::vector<Rim>& rims, Direct
 			guide.weights[v]          = 0.0;
 			continue;
 		}
-		const Vector3d t = d.size() == 1 ? d[0] : Vector3d(d[0] - d[1]);
+		const Vector3d t       = d.size() == 1 ? d[0] : Vector3d(d[0] - d[1]);
 		const Vector3d inPlane = t - t.dot(guide.normals.col(v)) * guide.normals.col(v);
 		if (!(inPlane.norm() > 0.0))
 			continue;
-		result.tangents.col(v)   = inPlane.normalized();
-		guide.directions.col(v)  = result.tangents.col(v);
-		guide.weights[v]         = featureWeight;
+		result.tangents.col(v)  = inPlane.normalized();
+		guide.directions.col(v) = result.tangents.col(v);
+		guide.weights[v]        = featureWeight;
 	}
 
 	for (const Rim& rim : rims) {
@@ -131,7 +131,7 @@ PhasePins featurePins(const FeatureAlignment& alignment, const CrossField& field
 			pins.fixed[0][v] = pins.fixed[1][v] = 1;
 			continue;
 		}
-		const Vector3d t = alignment.tangents.col(v);
+		const Vector3d t  = alignment.tangents.col(v);
 		const double   c0 = std::abs(t.dot(field.d1.col(v))), c1 = std::abs(t.dot(field.d2.col(v)));
 		if (std::max(c0, c1) > arm)
 			pins.fixed[c0 > c1 ? 1 : 0][v] = 1;

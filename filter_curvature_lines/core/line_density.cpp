@@ -15,24 +15,25 @@ namespace {
 using Eigen::Vector3d;
 using SparseReal = Eigen::SparseMatrix<double>;
 
-constexpr double curvatureFloor = 0.1;  // of the RMS curvature: flat parts have no preferred direction
+constexpr double curvatureFloor =
+	0.1; // of the RMS curvature: flat parts have no preferred direction
 constexpr double stiffness      = 1e-3; // of the log density; keeps its solve well-posed
 const double     mostCorrection = std::log(2.0);
 constexpr double creaseShare    = 1e-3; // weight of a crease corner in the mean of a triangle
 
 // |normal curvature| along both arms of the cross at every vertex, floored.
-LineDensity bending(
-	const Scaffold& scaffold, const CrossField& field, const CurvatureField& curvature)
+LineDensity
+bending(const Scaffold& scaffold, const CrossField& field, const CurvatureField& curvature)
 {
-	const Index  n   = scaffold.mesh.vertexCount();
-	LineDensity  k   = LineDensity::Zero(2, n);
-	double       sum = 0.0, count = 0.0;
+	const Index n   = scaffold.mesh.vertexCount();
+	LineDensity k   = LineDensity::Zero(2, n);
+	double      sum = 0.0, count = 0.0;
 	for (Index v = 0; v < n; ++v) {
 		const Index i = scaffold.source[v];
 		if (i < 0)
 			continue;
 		const double k1 = curvature.k1[i], k2 = curvature.k2[i];
-		const double c  = field.d1.col(v).dot(curvature.d1.col(i));
+		const double c = field.d1.col(v).dot(curvature.d1.col(i));
 		k.col(v) << std::abs(k1 * c * c + k2 * (1.0 - c * c)),
 			std::abs(k2 * c * c + k1 * (1.0 - c * c));
 		sum += 0.5 * (k1 * k1 + k2 * k2);
@@ -44,33 +45,30 @@ LineDensity bending(
 // Log scales of both families at every vertex that make the fields of gradients nearly free of curl: one
 // line ends per unit of curl.
 LineDensity correction(
-	const TriangleMesh& mesh,
-	const CrossField&   field,
-	const LineDensity&  density,
-	double              evenness)
+	const TriangleMesh& mesh, const CrossField& field, const LineDensity& density, double evenness)
 {
-	const Index            n    = mesh.vertexCount();
-	const Eigen::VectorXcd rise = expectedRise(mesh, field, density);
-	const Eigen::VectorXd  area = mesh.vertexAreas();
+	const Index                         n    = mesh.vertexCount();
+	const Eigen::VectorXcd              rise = expectedRise(mesh, field, density);
+	const Eigen::VectorXd               area = mesh.vertexAreas();
 	std::vector<Eigen::Triplet<double>> entries;
 	entries.reserve(18 * mesh.triangleCount() + 2 * n);
 	Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * n);
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
-		const TriangleField  tri = triangleField(mesh, field, density, t);
+		const TriangleField tri = triangleField(mesh, field, density, t);
 		// The circulation, every side turned into the frame of corner 0.
 		Complex circulation = 0.0;
 		for (int c = 0; c < 3; ++c) {
-			const Index   e = mesh.edgeOf(t, c);
-			const Complex side =
-				mesh.isForward(t, c) ? rise[e] : -turned(rise[e], field.turns[e]);
+			const Index   e    = mesh.edgeOf(t, c);
+			const Complex side = mesh.isForward(t, c) ? rise[e] : -turned(rise[e], field.turns[e]);
 			circulation += turned(side, -tri.turns[c]);
 		}
 		for (int f = 0; f < 2; ++f) {
-			const double   nu    = tri.target[f].norm() + 1e-300;
-			const Vector3d d     = tri.target[f] / nu;
-			const double   curl  = (f == 0 ? circulation.real() : circulation.imag()) / nu / (tri.area + 1e-300);
-			const double   fit   = field.index[t] == 0 ? tri.area : 0.0;
-			Vector3d       across;
+			const double   nu = tri.target[f].norm() + 1e-300;
+			const Vector3d d  = tri.target[f] / nu;
+			const double   curl =
+				(f == 0 ? circulation.real() : circulation.imag()) / nu / (tri.area + 1e-300);
+			const double fit = field.index[t] == 0 ? tri.area : 0.0;
+			Vector3d     across;
 			for (int c = 0; c < 3; ++c)
 				across[c] = tri.gradient.col(c).cross(d).dot(tri.normal);
 			std::array<Index, 3> unknown;
@@ -82,8 +80,8 @@ LineDensity correction(
 					entries.emplace_back(
 						unknown[a],
 						unknown[b],
-						fit * across[a] * across[b] + stiffness * tri.area *
-														  tri.gradient.col(a).dot(tri.gradient.col(b)));
+						fit * across[a] * across[b] +
+							stiffness * tri.area * tri.gradient.col(a).dot(tri.gradient.col(b)));
 			}
 		}
 	}
@@ -93,11 +91,11 @@ LineDensity correction(
 	SparseReal matrix(2 * n, 2 * n);
 	matrix.setFromTriplets(entries.begin(), entries.end());
 	const Eigen::SimplicialLDLT<SparseReal> solver(matrix);
-	Eigen::VectorXd scales = solver.solve(right);
+	Eigen::VectorXd                         scales = solver.solve(right);
 	if (solver.info() != Eigen::Success || !scales.allFinite())
 		scales.setZero();
-	LineDensity result = Eigen::Map<LineDensity>(scales.data(), 2, n);
-	const double mean  = 0.5 * result.colwise().sum().dot(area.transpose()) / area.sum();
+	LineDensity  result = Eigen::Map<LineDensity>(scales.data(), 2, n);
+	const double mean   = 0.5 * result.colwise().sum().dot(area.transpose()) / area.sum();
 	return (result.array() - mean).cwiseMax(-mostCorrection).cwiseMin(mostCorrection);
 }
 
@@ -105,8 +103,8 @@ LineDensity correction(
 std::pair<double, double>
 countsOf(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density)
 {
-	const Eigen::VectorXd area = mesh.vertexAreas();
-	double inside = 0.0, onRims = 0.0;
+	const Eigen::VectorXd area   = mesh.vertexAreas();
+	double                inside = 0.0, onRims = 0.0;
 	for (Index v = 0; v < mesh.vertexCount(); ++v)
 		inside += area[v] * density(0, v) * density(1, v);
 	for (Index e = 0; e < mesh.edgeCount(); ++e) {
@@ -127,22 +125,23 @@ TriangleField triangleField(
 	const TriangleMesh& mesh, const CrossField& field, const LineDensity& density, Index triangle)
 {
 	TriangleField   result;
-	const Triangle& t       = mesh.triangles()[triangle];
-	const Vector3d  area    = mesh.areaVector(triangle);
-	result.area             = area.norm();
-	result.normal           = result.area > 0.0 ? Vector3d(area / result.area) : Vector3d(field.normals.col(t[0]));
-	result.turns            = cornerTurns(mesh, field, triangle);
-	result.target           = {Vector3d::Zero(), Vector3d::Zero()};
-	double sum              = 0.0;
+	const Triangle& t    = mesh.triangles()[triangle];
+	const Vector3d  area = mesh.areaVector(triangle);
+	result.area          = area.norm();
+	result.normal =
+		result.area > 0.0 ? Vector3d(area / result.area) : Vector3d(field.normals.col(t[0]));
+	result.turns  = cornerTurns(mesh, field, triangle);
+	result.target = {Vector3d::Zero(), Vector3d::Zero()};
+	double sum    = 0.0;
 	for (int c = 0; c < 3; ++c) {
 		const Vector3d opposite =
 			mesh.vertices.col(t[(c + 2) % 3]) - mesh.vertices.col(t[(c + 1) % 3]);
 		result.gradient.col(c) = result.normal.cross(opposite) / (2.0 * result.area + 1e-300);
-		const Index    v      = t[c];
-		const Vector3d normal = field.normals.col(v);
-		const std::array<Vector3d, 2> arms = {
-			transported(field.d1.col(v), normal, result.normal) * density(0, v),
-			transported(field.d2.col(v), normal, result.normal) * density(1, v)};
+		const Index                   v      = t[c];
+		const Vector3d                normal = field.normals.col(v);
+		const std::array<Vector3d, 2> arms   = {
+			  transported(field.d1.col(v), normal, result.normal) * density(0, v),
+			  transported(field.d2.col(v), normal, result.normal) * density(1, v)};
 		const double weight = field.onCrease[v] ? creaseShare : 1.0;
 		for (int f = 0; f < 2; ++f) {
 			const FamilyImage image = familyBehind(result.turns[c], f);
@@ -164,19 +163,19 @@ expectedRise(const TriangleMesh& mesh, const CrossField& field, const LineDensit
 	};
 	Eigen::VectorXcd rise(mesh.edgeCount());
 	for (Index e = 0; e < mesh.edgeCount(); ++e) {
-		const auto&    edge  = mesh.edges()[e];
-		const Vector3d step  = mesh.along(e);
+		const auto&    edge      = mesh.edges()[e];
+		const Vector3d step      = mesh.along(e);
 		const bool     skipStart = field.onCrease[edge.from] && !field.onCrease[edge.to];
 		const bool     skipEnd   = field.onCrease[edge.to] && !field.onCrease[edge.from];
 		const double   share     = skipStart ? 0.0 : skipEnd ? 1.0 : 0.5;
-		rise[e] = share * at(edge.from, step) +
+		rise[e]                  = share * at(edge.from, step) +
 				  (1.0 - share) * turned(at(edge.to, step), -int(field.turns[e]));
 	}
 	return rise;
 }
 
-double expectedVertices(
-	const TriangleMesh& mesh, const CrossField& field, const LineDensity& density)
+double
+expectedVertices(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density)
 {
 	const auto [inside, onRims] = countsOf(mesh, field, density);
 	return inside + onRims;
@@ -190,13 +189,14 @@ LineDensity lineDensity(
 {
 	const TriangleMesh& mesh = scaffold.mesh;
 	const double        area = mesh.vertexAreas().sum();
-	LineDensity density =
+	LineDensity         density =
 		LineDensity::Constant(2, mesh.vertexCount(), std::sqrt(options.targetVertices / area));
 	if (options.anisotropy > 1.0) {
 		const LineDensity bends = bending(scaffold, field, curvature);
 		const double      most  = std::sqrt(options.anisotropy);
 		for (Index v = 0; v < mesh.vertexCount(); ++v) {
-			const double a = std::clamp(std::pow(bends(0, v) / bends(1, v), 0.25), 1.0 / most, most);
+			const double a =
+				std::clamp(std::pow(bends(0, v) / bends(1, v), 0.25), 1.0 / most, most);
 			density(0, v) *= a;
 			density(1, v) /= a;
 		}

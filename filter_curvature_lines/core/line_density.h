@@ -11,8 +11,9 @@ namespace curvature_lines {
 
 struct LineDensityOptions {
 	double targetVertices = 1600.0;
-	double anisotropy     = 1.5;  // largest ratio of the spacings of both families that curvature asks for
-	double evenness       = 5.0;  // how much uneven spacing costs against lines that end
+	double anisotropy =
+		1.5;               // largest ratio of the spacings of both families that curvature asks for
+	double evenness = 5.0; // how much uneven spacing costs against lines that end
 };
 
 // Row f: lines of family f per length, met when walking along d1 (f = 0) or d2 (f = 1).
@@ -26,8 +27,8 @@ LineDensity lineDensity(
 	const LineDensityOptions& options);
 
 // Vertices a quad mesh with these lines has: crossings, and lines that meet a rim.
-double expectedVertices(
-	const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
+double
+expectedVertices(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
 
 // The increase of the two phases (real: family 0, imaginary: family 1) along every edge, in lines, in the
 // frame at its start. A crease vertex, whose frame is tilted against the faces beside it, does not speak

@@ -25,7 +25,8 @@ constexpr int    eigenIterations = 30;
 constexpr double pinWeight       = 100.0; // over the largest diagonal, in the start
 constexpr double hardPinWeight   = 1e4;   // and in the fit
 constexpr double gauge           = 1e-8;
-constexpr double unreliable      = 1e-6; // weight of triangles where a line ends or the field is singular
+constexpr double unreliable =
+	1e-6; // weight of triangles where a line ends or the field is singular
 
 Complex rounded(const Complex& z)
 {
@@ -70,13 +71,13 @@ SparseReal periodicEnergy(
 		entries.emplace_back(std::max(row, column), std::min(row, column), value);
 	};
 	for (Index e = 0; e < mesh.edgeCount(); ++e) {
-		const TriangleMesh::Edge& edge = mesh.edges()[e];
-		const bool     fromEnd = field.onCrease[edge.from] && !field.onCrease[edge.to];
-		const Vector3d along   = mesh.along(e);
+		const TriangleMesh::Edge& edge    = mesh.edges()[e];
+		const bool                fromEnd = field.onCrease[edge.from] && !field.onCrease[edge.to];
+		const Vector3d            along   = mesh.along(e);
 		// Squared cosines of the edge with the arms; at the end that is not tilted.
-		const Index  v  = fromEnd ? edge.to : edge.from;
-		double       c0 = std::pow(field.d1.col(v).dot(along), 2);
-		double       c1 = std::pow(field.d2.col(v).dot(along), 2);
+		const Index v  = fromEnd ? edge.to : edge.from;
+		double      c0 = std::pow(field.d1.col(v).dot(along), 2);
+		double      c1 = std::pow(field.d2.col(v).dot(along), 2);
 		if (fromEnd && (field.turns[e] & 1))
 			std::swap(c0, c1);
 		const double sum = c0 + c1 + 1e-300;
@@ -165,7 +166,9 @@ Eigen::VectorXcd periodicStart(
 	}
 	Eigen::VectorXcd phase(n);
 	for (Index v = 0; v < n; ++v)
-		phase[v] = Complex(std::atan2(x[4 * v + 1], x[4 * v]), std::atan2(x[4 * v + 3], x[4 * v + 2])) / fullTurn;
+		phase[v] =
+			Complex(std::atan2(x[4 * v + 1], x[4 * v]), std::atan2(x[4 * v + 3], x[4 * v + 2])) /
+			fullTurn;
 	return phase;
 }
 
@@ -179,7 +182,7 @@ Eigen::VectorXcd endsOf(
 	for (Index e = 0; e < mesh.edgeCount(); ++e) {
 		const TriangleMesh::Edge& edge = mesh.edges()[e];
 		const Complex             to   = turned(phase[edge.to], -int(field.turns[e]));
-		end[e] = to + rounded(phase[edge.from] + rise[e] - to);
+		end[e]                         = to + rounded(phase[edge.from] + rise[e] - to);
 	}
 	return end;
 }
@@ -232,7 +235,7 @@ void fit(
 		// The phase at corner c in the frame of corner 0 is i^-turns phase + whole[c].
 		std::array<Complex, 3> whole = {0.0, 0.0, 0.0};
 		const Complex          d01   = increase(mesh, field, positions, t, 0);
-		const Complex          d20   = turned(increase(mesh, field, positions, t, 2), -tri.turns[2]);
+		const Complex          d20 = turned(increase(mesh, field, positions, t, 2), -tri.turns[2]);
 		whole[1] = rounded(w0 + d01 - turned(positions.phase[corners[1]], -tri.turns[1]));
 		whole[2] = rounded(w0 - d20 - turned(positions.phase[corners[2]], -tri.turns[2]));
 		for (int f = 0; f < 2; ++f) {
@@ -240,12 +243,13 @@ void fit(
 			const double   weight = tri.area * (bad ? unreliable : 1.0);
 			const double   nu     = tri.target[f].norm() + 1e-300;
 			const Vector3d across = tri.target[f] / nu, along = tri.normal.cross(across);
-			const Vector3d a = tri.gradient.transpose() * across, b = tri.gradient.transpose() * along;
+			const Vector3d a = tri.gradient.transpose() * across,
+						   b = tri.gradient.transpose() * along;
 			const Eigen::Matrix3d K =
 				weight * (a * a.transpose() + options.fitDrift * b * b.transpose());
-			Vector3d              unwrapped;
-			std::array<Index, 3>  unknown;
-			Vector3d              sign;
+			Vector3d             unwrapped;
+			std::array<Index, 3> unknown;
+			Vector3d             sign;
 			for (int c = 0; c < 3; ++c) {
 				const FamilyImage image = familyBehind(tri.turns[c], f);
 				unknown[c]              = 2 * corners[c] + image.family;

@@ -12,20 +12,24 @@ namespace curvature_lines {
 struct PhasePins {
 	std::array<std::vector<char>, 2> fixed; // per family and vertex
 
-	explicit PhasePins(Index vertices = 0) : fixed{std::vector<char>(vertices, 0), std::vector<char>(vertices, 0)} {}
+	explicit PhasePins(Index vertices = 0) :
+			fixed{std::vector<char>(vertices, 0), std::vector<char>(vertices, 0)}
+	{
+	}
 };
 
 struct PositionFieldOptions {
-	double startDrift = 10.0;  // cost of drifting along a line over that of uneven spacing: in the start
-	double fitDrift   = 100.0; // and in the fit
-	int    rounds     = 2;     // of the fit, jumps found anew in each
+	double startDrift =
+		10.0; // cost of drifting along a line over that of uneven spacing: in the start
+	double fitDrift = 100.0; // and in the fit
+	int    rounds   = 2;     // of the fit, jumps found anew in each
 };
 
 struct PositionField {
 	Eigen::VectorXcd phase; // per vertex, in its frame
 	// Per edge: what the phase becomes at `to`, in the frame of `from`: i^-turns phase(to) + whole numbers.
 	Eigen::VectorXcd end;
-	Index lineEnds = 0; // triangles in which a line of either family ends
+	Index            lineEnds = 0; // triangles in which a line of either family ends
 };
 
 PositionField positionField(

@@ -36,10 +36,7 @@ Traced trace(
 		positionField(scaffold.mesh, field, density, pins, options.phases);
 	return {
 		arrangeOnSurface(
-			scaffold.mesh,
-			field.normals,
-			features,
-			integerLines(scaffold.mesh, field, positions)),
+			scaffold.mesh, field.normals, features, integerLines(scaffold.mesh, field, positions)),
 		positions.lineEnds};
 }
 
@@ -79,25 +76,25 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	forScaffold.closedRim               = options.mesh.closeHoles ? closedRim : 0.0;
 	Scaffold scaffold =
 		buildScaffold(cloud, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
-	const TriangleMesh& mesh  = scaffold.mesh;
-	result.scaffoldVertices   = mesh.vertexCount();
-	result.scaffoldEuler      = mesh.eulerCharacteristic();
-	result.droppedComponents  = scaffold.droppedComponents;
-	result.filledHoles        = scaffold.filledHoles;
-	result.lostCreaseEdges    = scaffold.lostCreaseEdges;
+	const TriangleMesh& mesh = scaffold.mesh;
+	result.scaffoldVertices  = mesh.vertexCount();
+	result.scaffoldEuler     = mesh.eulerCharacteristic();
+	result.droppedComponents = scaffold.droppedComponents;
+	result.filledHoles       = scaffold.filledHoles;
+	result.lostCreaseEdges   = scaffold.lostCreaseEdges;
 	if (mesh.triangleCount() == 0)
 		return result;
 
-	const std::vector<Rim> rims = findRims(mesh);
+	const std::vector<Rim> rims  = findRims(mesh);
 	DirectionGuide         guide = directionGuide(scaffold, curvature);
 	fitRims(rims, cloud, guide.normals, options.noise, scaffold);
 	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
 	const CrossField       field     = smoothCrossField(mesh, guide);
-	result.singularTriangles = field.singularTriangles();
+	result.singularTriangles         = field.singularTriangles();
 	progress.report(0.4);
 	const PhasePins        pins     = featurePins(alignment, field);
 	const SurfaceFeatures& features = alignment.features;
-	LineDensityOptions wanted;
+	LineDensityOptions     wanted;
 	wanted.targetVertices = options.targetVertices;
 	wanted.anisotropy     = options.anisotropy;
 	LineDensity density   = lineDensity(scaffold, field, curvature, wanted);
@@ -126,11 +123,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 		result.mesh = splitter.mesh();
 	}
 	projectVertices(
-		cloud,
-		curvature,
-		onFeature,
-		result.mesh,
-		progress.sub(0.95, 1.0, "Projecting vertices"));
+		cloud, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
 	if (options.mesh.triangulate) {
 		PolygonSplitter splitter(result.mesh);
 		splitter.triangulate();

@@ -10,10 +10,10 @@
 namespace curvature_lines {
 
 struct PositionFieldMeshOptions {
-	double               targetVertices = 1600.0;
-	double               anisotropy     = 1.5; // largest ratio of spacings that curvature asks for; 1: none
-	double               noise          = 0.0; // left in the cloud, a length
-	ScaffoldOptions      scaffold; // its target and noise are set from the above
+	double          targetVertices = 1600.0;
+	double          anisotropy = 1.5; // largest ratio of spacings that curvature asks for; 1: none
+	double          noise      = 0.0; // left in the cloud, a length
+	ScaffoldOptions scaffold;         // its target and noise are set from the above
 	PositionFieldOptions phases;
 	QuadMeshOptions      mesh;
 };
@@ -21,7 +21,7 @@ struct PositionFieldMeshOptions {
 struct PositionFieldMeshResult : QuadMeshResult {
 	Index scaffoldVertices = 0, scaffoldEuler = 0;
 	Index singularTriangles = 0, lineEnds = 0;
-	Index droppedComponents = 0; // too small for a mesh, or without any line
+	Index droppedComponents  = 0; // too small for a mesh, or without any line
 	Index repairedComponents = 0;
 	Index filledHoles = 0, lostCreaseEdges = 0;
 };

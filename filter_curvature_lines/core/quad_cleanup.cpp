@@ -23,7 +23,8 @@ struct Gate { // a face entered through its side `side`, from corner `side` to t
 };
 
 struct Strip {
-	std::vector<Gate> path; // the side every face but the last is left through; the last is entered through
+	std::vector<Gate>
+		path; // the side every face but the last is left through; the last is entered through
 };
 
 class StripFinder {
@@ -53,12 +54,12 @@ public:
 	// Of a pentagon: the side opposite its flattest corner.
 	Index splitSide(Index f) const
 	{
-		const Face& face = m_faces[f];
+		const Face& face     = m_faces[f];
 		Index       flattest = 0;
 		double      least    = 2.0;
 		for (Index k = 0; k < 5; ++k) {
-			const Vector3d a = m_vertices[face[(k + 4) % 5]] - m_vertices[face[k]];
-			const Vector3d b = m_vertices[face[(k + 1) % 5]] - m_vertices[face[k]];
+			const Vector3d a      = m_vertices[face[(k + 4) % 5]] - m_vertices[face[k]];
+			const Vector3d b      = m_vertices[face[(k + 1) % 5]] - m_vertices[face[k]];
 			const double   cosine = a.dot(b) / (a.norm() * b.norm() + 1e-300);
 			if (cosine < least) {
 				least    = cosine;
@@ -69,7 +70,7 @@ public:
 	}
 
 private:
-	Index sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
+	Index                sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
 	static std::uint64_t key(Index a, Index b)
 	{
 		return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
@@ -81,11 +82,10 @@ private:
 		for (Index quads = 0; quads <= longest;) {
 			strip.path.push_back(at);
 			const Face& face = m_faces[at.face];
-			const auto  next = m_sides.find(
-				key(face[(at.side + 1) % face.size()], face[at.side]));
+			const auto  next = m_sides.find(key(face[(at.side + 1) % face.size()], face[at.side]));
 			if (next == m_sides.end())
 				return;
-			const Gate  in  = next->second;
+			const Gate in   = next->second;
 			const auto seen = [&](const Gate& g) { return g.face == in.face; };
 			if (std::any_of(strip.path.begin(), strip.path.end(), seen))
 				return;
@@ -148,7 +148,8 @@ PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, 
 		std::vector<std::vector<Face>> parts(faces.size());
 		for (const Strip& strip : strips) {
 			const auto& path = strip.path;
-			if (std::any_of(path.begin(), path.end(), [&](const Gate& g) { return used[g.face] != 0; }))
+			if (std::any_of(
+					path.begin(), path.end(), [&](const Gate& g) { return used[g.face] != 0; }))
 				continue;
 			for (const Gate& gate : path)
 				used[gate.face] = 1;

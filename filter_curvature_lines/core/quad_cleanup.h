@@ -14,13 +14,10 @@ struct QuadCleanupOptions {
 // Cuts large faces, joins triangles with pentagons, and inserts strips. `onFeature` marks the vertices on
 // rims and creases and grows with the mesh.
 PolygonMesh cleanUpQuads(
-	const PolygonMesh&        mesh,
-	std::vector<char>&        onFeature,
-	const QuadCleanupOptions& options = {});
+	const PolygonMesh& mesh, std::vector<char>& onFeature, const QuadCleanupOptions& options = {});
 
 // A pentagon is taken through the side opposite its flattest corner, a triangle through any side, on through
 // opposite sides of quads until another one: the strip is split in two along its middle. Shortest first.
-PolygonMesh insertStrips(
-	const PolygonMesh& mesh, std::vector<char>& onFeature, Index longestStrip);
+PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, Index longestStrip);
 
 } // namespace curvature_lines

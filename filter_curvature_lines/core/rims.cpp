@@ -15,20 +15,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  tangentReach   = 4; // vertices to both sides
-constexpr Index  chordReach     = 5;
-constexpr Index  cornerReach    = 6;   // a corner is the sharpest turn within so many
-constexpr double cornerCosine   = 0.6; // of the turn: 53 degrees
-constexpr double windowLength   = 2.5; // half the part of the rim looked at; these in vertex spacings
-constexpr double windowDepth    = 3.0;
-constexpr double mostOffset     = 1.5;
-constexpr double sheetHeight    = 1.0;
-constexpr double sameSheet      = 0.5; // cosine of normals
-constexpr Index  fewestPoints   = 4;
-constexpr double secondOutermost = 1.678; // median number of points as far out as the second outermost
+constexpr Index  tangentReach = 4; // vertices to both sides
+constexpr Index  chordReach   = 5;
+constexpr Index  cornerReach  = 6;   // a corner is the sharpest turn within so many
+constexpr double cornerCosine = 0.6; // of the turn: 53 degrees
+constexpr double windowLength = 2.5; // half the part of the rim looked at; these in vertex spacings
+constexpr double windowDepth  = 3.0;
+constexpr double mostOffset   = 1.5;
+constexpr double sheetHeight  = 1.0;
+constexpr double sameSheet    = 0.5; // cosine of normals
+constexpr Index  fewestPoints = 4;
+constexpr double secondOutermost =
+	1.678; // median number of points as far out as the second outermost
 constexpr int    smoothingSteps = 8;
-constexpr double smoothing = 0.5, unshrinking = -0.53; // Taubin 1995: a low-pass filter that does not shrink
-constexpr Index  lineBegin = 2, lineEnd = 7; // vertices beside a corner that its sides are fitted to
+constexpr double smoothing      = 0.5,
+				 unshrinking    = -0.53;    // Taubin 1995: a low-pass filter that does not shrink
+constexpr Index lineBegin = 2, lineEnd = 7; // vertices beside a corner that its sides are fitted to
 
 // Points expected beyond x when they lie `density` per length up to 0, blurred by `noise`.
 double expectedBeyond(double x, double density, double noise)
@@ -84,7 +86,13 @@ double offsetOf(
 }
 
 // The line through the positions of the rim from k + step * lineBegin on.
-void fitLine(const Rim& rim, Index k, Index step, const Eigen::Matrix3Xd& positions, Vector3d& origin, Vector3d& direction)
+void fitLine(
+	const Rim&              rim,
+	Index                   k,
+	Index                   step,
+	const Eigen::Matrix3Xd& positions,
+	Vector3d&               origin,
+	Vector3d&               direction)
 {
 	origin.setZero();
 	const double count = lineEnd - lineBegin + 1;
@@ -100,7 +108,7 @@ void fitLine(const Rim& rim, Index k, Index step, const Eigen::Matrix3Xd& positi
 
 Vector3d Rim::tangent(Index k, const Eigen::Matrix3Xd& positions) const
 {
-	const Index reach = std::max<Index>(1, std::min(tangentReach, size() / 6));
+	const Index reach    = std::max<Index>(1, std::min(tangentReach, size() / 6));
 	const auto  isCorner = [&](Index m) { return corner[(m % size() + size()) % size()] != 0; };
 	Index       ahead = k, behind = k;
 	while (ahead < k + reach && (ahead == k || !isCorner(ahead)))
@@ -128,7 +136,7 @@ std::vector<Rim> findRims(const TriangleMesh& mesh)
 				bool sharpest = cosines[k] < cornerCosine;
 				for (Index m = -cornerReach; m <= cornerReach && sharpest; ++m) {
 					const double other = cosines[(k + m + rim.size()) % rim.size()];
-					sharpest = m < 0 ? cosines[k] < other : cosines[k] <= other;
+					sharpest           = m < 0 ? cosines[k] < other : cosines[k] <= other;
 				}
 				rim.corner[k] = sharpest;
 			}
@@ -155,7 +163,7 @@ void fitRims(
 			const Vector3d p = positions.col(rim.at(k)), normal = normals.col(rim.at(k));
 			Vector3d       tangent = rim.tangent(k, positions);
 			tangent                = (tangent - tangent.dot(normal) * normal).normalized();
-			moved[k] = p;
+			moved[k]               = p;
 			if (tangent.allFinite())
 				moved[k] += tangent.cross(normal).normalized() *
 							offsetOf(p, normal, tangent, cloud, search, scaffold.spacing, noise);
@@ -165,8 +173,9 @@ void fitRims(
 		for (int step = 0; step < smoothingSteps; ++step) {
 			for (const double share : {smoothing, unshrinking}) {
 				for (Index k = 0; k < rim.size(); ++k) {
-					const Vector3d p      = positions.col(rim.at(k));
-					const Vector3d middle = 0.5 * (positions.col(rim.at(k - 1)) + positions.col(rim.at(k + 1)));
+					const Vector3d p = positions.col(rim.at(k));
+					const Vector3d middle =
+						0.5 * (positions.col(rim.at(k - 1)) + positions.col(rim.at(k + 1)));
 					moved[k] = rim.corner[k] ? p : Vector3d(p + share * (middle - p));
 				}
 				for (Index k = 0; k < rim.size(); ++k)
@@ -180,11 +189,11 @@ void fitRims(
 			Vector3d p, q, d, e;
 			fitLine(rim, k, -1, positions, p, d);
 			fitLine(rim, k, 1, positions, q, e);
-			const double   b = d.dot(e), det = 1.0 - b * b;
+			const double b = d.dot(e), det = 1.0 - b * b;
 			if (!(det > 0.1))
 				continue;
-			const Vector3d w    = q - p;
-			const double   s    = (w.dot(d) - b * w.dot(e)) / det, t = (b * w.dot(d) - w.dot(e)) / det;
+			const Vector3d w = q - p;
+			const double   s = (w.dot(d) - b * w.dot(e)) / det, t = (b * w.dot(d) - w.dot(e)) / det;
 			const Vector3d meet = 0.5 * (p + s * d + q + t * e);
 			if ((meet - positions.col(rim.at(k))).norm() < mostOffset * scaffold.spacing)
 				positions.col(rim.at(k)) = meet;

@@ -22,27 +22,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  spacingProbes     = 2000;
-constexpr Index  spacingNeighbors  = 6;
-constexpr double poissonSpacing    = 0.977; // mean distance to six neighbours of random points, density 1
-constexpr double evenSites         = 1.5;   // mean distance to six neighbours, thinned to distance 1
-constexpr double trianglesPerFace  = 3.0;   // thinning distances in an edge of the quad mesh
+constexpr Index  spacingProbes    = 2000;
+constexpr Index  spacingNeighbors = 6;
+constexpr double poissonSpacing =
+	0.977; // mean distance to six neighbours of random points, density 1
+constexpr double evenSites        = 1.5; // mean distance to six neighbours, thinned to distance 1
+constexpr double trianglesPerFace = 3.0; // thinning distances in an edge of the quad mesh
 // Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
 // cuts off the corners where creases meet.
-constexpr double creaseStep        = 0.93;
-constexpr double noiseClearance    = 2.0;   // noise units: the denoised points beside a crease are round
-constexpr double coarser           = 1.5;   // thinning of the next attempt, over this one
-constexpr int    attempts          = 3;
-constexpr Index  rimFlaws          = 5;     // a rim counts as so many defects
-constexpr double toleratedDefects  = 0.002; // per vertex
+constexpr double creaseStep     = 0.93;
+constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
+constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
+constexpr int    attempts       = 3;
+constexpr Index  rimFlaws       = 5;       // a rim counts as so many defects
+constexpr double toleratedDefects = 0.002; // per vertex
 
 double spacingOf(const PointSample& sample)
 {
 	const Index         count = std::min(sample.cloud.size(), spacingProbes);
 	std::vector<double> spacing(count);
 	parallelFor(count, {}, [&](Index i) {
-		const Vector3d p   = sample.cloud.positions.col(i);
-		double         sum = 0.0;
+		const Vector3d p    = sample.cloud.positions.col(i);
+		double         sum  = 0.0;
 		const auto     near = sample.search.nearest(p, spacingNeighbors + 1);
 		for (const Index j : near)
 			sum += (sample.cloud.positions.col(j) - p).norm();
@@ -59,14 +60,14 @@ struct CreaseSamples {
 
 CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step)
 {
-	CreaseSamples                         samples;
+	CreaseSamples                          samples;
 	std::map<std::array<double, 3>, Index> ends; // lines that meet share the vertex
-	const auto endVertex = [&](const Vector3d& p) {
-		const auto found = ends.try_emplace(
-			{p.x(), p.y(), p.z()}, static_cast<Index>(samples.points.size()));
-		if (found.second)
-			samples.points.push_back(p);
-		return found.first->second;
+	const auto                             endVertex = [&](const Vector3d& p) {
+        const auto found =
+            ends.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(samples.points.size()));
+        if (found.second)
+            samples.points.push_back(p);
+        return found.first->second;
 	};
 	for (const FeatureLine& crease : creases) {
 		std::vector<Vector3d> corners;
@@ -90,8 +91,8 @@ CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step
 			}
 			else {
 				const double s = arc.back() * k / pieces;
-				const auto   i =
-					std::clamp<std::ptrdiff_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin(), 1, arc.size() - 1);
+				const auto   i = std::clamp<std::ptrdiff_t>(
+                    std::upper_bound(arc.begin(), arc.end(), s) - arc.begin(), 1, arc.size() - 1);
 				const double t = (s - arc[i - 1]) / (arc[i] - arc[i - 1]);
 				next           = static_cast<Index>(samples.points.size());
 				samples.points.push_back(corners[i - 1] + t * (corners[i] - corners[i - 1]));
@@ -114,8 +115,8 @@ Eigen::Matrix3Xd asMatrix(const std::vector<Vector3d>& points)
 
 // What the triangulation is made from: points of the cloud (`source`), then samples of creases (-1).
 struct Sites {
-	Eigen::Matrix3Xd   points, normals; // normals of crease samples are zero
-	std::vector<Index> source;
+	Eigen::Matrix3Xd                     points, normals; // normals of crease samples are zero
+	std::vector<Index>                   source;
 	std::vector<std::pair<Index, Index>> creaseEdges;
 };
 
@@ -138,7 +139,9 @@ Sites chooseSites(
 			std::remove_if(
 				chosen.begin(),
 				chosen.end(),
-				[&](Index i) { return search.anyWithin(sample.cloud.positions.col(i), clearance); }),
+				[&](Index i) {
+					return search.anyWithin(sample.cloud.positions.col(i), clearance);
+				}),
 			chosen.end());
 	}
 	Sites       sites;
@@ -174,7 +177,11 @@ Eigen::VectorXd localDistances(const Eigen::Matrix3Xd& points, double distance)
 }
 
 // Turns every component to the side most of its normals are on.
-void orient(const TriangleMesh& mesh, const Sites& sites, const std::vector<Index>& component, std::vector<Triangle>& triangles)
+void orient(
+	const TriangleMesh&       mesh,
+	const Sites&              sites,
+	const std::vector<Index>& component,
+	std::vector<Triangle>&    triangles)
 {
 	std::vector<double> votes(mesh.vertexCount(), 0.0);
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
@@ -219,7 +226,8 @@ double lengthOf(const std::vector<Index>& rim, const Eigen::Matrix3Xd& points)
 }
 
 // Only vertices that a triangle uses.
-TriangleMesh compact(const Sites& sites, std::vector<Triangle> triangles, std::vector<Index>& nameOf)
+TriangleMesh
+compact(const Sites& sites, std::vector<Triangle> triangles, std::vector<Index>& nameOf)
 {
 	nameOf.assign(sites.points.cols(), -1);
 	for (const Triangle& t : triangles)
@@ -249,14 +257,14 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	std::vector<Index>    copies;
 	std::vector<Triangle> triangles =
 		manifoldPart(front, static_cast<Index>(sites.points.cols()), copies);
-	scaffold.defects = static_cast<Index>(front.size() - triangles.size() + copies.size());
+	scaffold.defects      = static_cast<Index>(front.size() - triangles.size() + copies.size());
 	const Index originals = static_cast<Index>(sites.points.cols());
 	const Index total     = originals + static_cast<Index>(copies.size());
 	sites.points.conservativeResize(3, total);
 	sites.normals.conservativeResize(3, total);
 	sites.source.resize(total);
 	for (std::size_t k = 0; k < copies.size(); ++k) {
-		const Index to       = originals + static_cast<Index>(k);
+		const Index to        = originals + static_cast<Index>(k);
 		sites.points.col(to)  = sites.points.col(copies[k]);
 		sites.normals.col(to) = sites.normals.col(copies[k]);
 		sites.source[to]      = sites.source[copies[k]];
@@ -271,7 +279,7 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	// Closing the rim of a speck would make a pillow of it: the area keeps rims longer than small holes.
 	const double least =
 		std::max(options.leastArea * cell * cell, options.smallHole * distance * distance);
-	const double largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
+	const double      largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
 	std::vector<char> dropped(area.size(), 0);
 	for (std::size_t v = 0; v < area.size(); ++v) {
 		if (!(area[v] > 0.0))
@@ -342,9 +350,9 @@ Scaffold buildScaffold(
 	const PointSample sample(std::move(shuffled));
 	const double      spacing = spacingOf(sample);
 	const double      cell =
-		options.targetVertices > 0.0 ?
-			spacing / poissonSpacing * std::sqrt(cloud.size() / options.targetVertices) :
-			0.0;
+        options.targetVertices > 0.0
+				 ? spacing / poissonSpacing * std::sqrt(cloud.size() / options.targetVertices)
+				 : 0.0;
 
 	Scaffold best;
 	Index    fewest   = 0;
@@ -354,7 +362,8 @@ Scaffold buildScaffold(
 		Scaffold next = attempt(
 			chooseSites(sample, order, creases, distance, options), distance, cell, options);
 		// True rims are in every attempt, false ones are not.
-		const Index flaws = next.defects + next.lostCreaseEdges + rimFlaws * static_cast<Index>(next.mesh.rims().size());
+		const Index flaws = next.defects + next.lostCreaseEdges +
+							rimFlaws * static_cast<Index>(next.mesh.rims().size());
 		if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
 			best   = std::move(next);
 			fewest = flaws;

@@ -17,25 +17,26 @@ struct FeatureLine {
 };
 
 struct ScaffoldOptions {
-	double targetVertices = 0.0; // of the quad mesh: triangles get about half as large as its faces; 0: any
-	double thinning       = 1.2; // least distance of vertices, in spacings of the cloud
-	double longestEdge    = 5.0; // these in thinning distances:
-	double smallHole      = 10.0; // rims this short are filled
+	double targetVertices =
+		0.0; // of the quad mesh: triangles get about half as large as its faces; 0: any
+	double thinning        = 1.2;  // least distance of vertices, in spacings of the cloud
+	double longestEdge     = 5.0;  // these in thinning distances:
+	double smallHole       = 10.0; // rims this short are filled
 	double creaseClearance = 0.75; // cloud points so near a crease are left out
-	double closedRim      = 0.0; // rims up to this length are closed as well, in edges of the quad mesh
-	double leastArea      = 6.0; // smaller components are dropped, in faces of the quad mesh
-	double noise = 0.0; // left in the cloud, a length: rounds the points beside a crease
+	double closedRim = 0.0; // rims up to this length are closed as well, in edges of the quad mesh
+	double leastArea = 6.0; // smaller components are dropped, in faces of the quad mesh
+	double noise     = 0.0; // left in the cloud, a length: rounds the points beside a crease
 };
 
 struct Scaffold {
 	TriangleMesh       mesh;
-	std::vector<Index> source;     // of every vertex: its point of the cloud; -1: there is none
-	std::vector<char>  creaseEdge; // of every edge
+	std::vector<Index> source;        // of every vertex: its point of the cloud; -1: there is none
+	std::vector<char>  creaseEdge;    // of every edge
 	double             spacing = 0.0; // of the vertices, a length
-	double             cell    = 0.0; // edge of a face of the quad mesh, a length; 0 without a target
+	double             cell = 0.0; // edge of a face of the quad mesh, a length; 0 without a target
 	Index              components = 0, droppedComponents = 0;
-	Index              filledHoles = 0, defects = 0; // places where the front did not close by itself
-	Index              lostCreaseEdges = 0;
+	Index filledHoles = 0, defects = 0; // places where the front did not close by itself
+	Index lostCreaseEdges = 0;
 
 	bool hasCreases() const;
 };

@@ -19,15 +19,18 @@ using Eigen::Vector3d;
 
 // Where a chord ends on the border of its triangle.
 struct BorderPoint {
-	Index node = -1;
-	int   rank = 0; // counter-clockwise around the triangle
-	Vector2d at = Vector2d::Zero(); // barycentric, of corners 1 and 2
+	Index    node = -1;
+	int      rank = 0;                // counter-clockwise around the triangle
+	Vector2d at   = Vector2d::Zero(); // barycentric, of corners 1 and 2
 };
 
 struct BorderChord {
 	BorderPoint a, b;
 	// Whether rank r lies on the border that runs counter-clockwise from a to b: right of the chord.
-	bool isRight(int r) const { return a.rank < b.rank ? a.rank < r && r < b.rank : r < b.rank || r > a.rank; }
+	bool isRight(int r) const
+	{
+		return a.rank < b.rank ? a.rank < r && r < b.rank : r < b.rank || r > a.rank;
+	}
 	bool crosses(const BorderChord& o) const { return isRight(o.a.rank) != isRight(o.b.rank); }
 	// The end of a crossing chord on the right, counted counter-clockwise from a.
 	int orderOf(const BorderChord& o, int ranks) const
@@ -49,14 +52,16 @@ double parameterAlong(const BorderChord& p, const BorderChord& q)
 class GraphBuilder {
 public:
 	GraphBuilder(
-		const TriangleMesh&      mesh,
-		const Eigen::Matrix3Xd&  normals,
-		const SurfaceFeatures&   features,
-		const SurfaceCurves&     curves,
+		const TriangleMesh&       mesh,
+		const Eigen::Matrix3Xd&   normals,
+		const SurfaceFeatures&    features,
+		const SurfaceCurves&      curves,
 		const std::vector<Index>& component,
-		const std::vector<char>& filled) : // by name of component: all its edges are in the graph
-			m_mesh(mesh), m_normals(normals), m_features(features), m_curves(curves),
-			m_component(component), m_filled(filled)
+		const std::vector<char>&  filled) :
+			// by name of component: all its edges are in the graph
+			m_mesh(mesh),
+			m_normals(normals), m_features(features), m_curves(curves), m_component(component),
+			m_filled(filled)
 	{
 		addEdgePoints();
 		addChords();
@@ -75,8 +80,11 @@ public:
 		return {std::move(positions), std::move(normals), m_edges, m_around, m_kept};
 	}
 	const std::vector<Index>& nodeComponents() const { return m_nodeComponents; }
-	const std::vector<char>&  removable() const { return m_removable; } // edges only there to be filled
-	Index                     crossings() const { return m_crossings; }
+	const std::vector<char>&  removable() const
+	{
+		return m_removable;
+	} // edges only there to be filled
+	Index crossings() const { return m_crossings; }
 
 private:
 	bool isInGraph(Index e) const
@@ -88,7 +96,8 @@ private:
 	Index addNode(const Vector3d& position, const Vector3d& normal, Index component)
 	{
 		m_positions.push_back(position);
-		m_nodeNormals.push_back(normal.norm() > 0.0 ? normal.normalized() : Vector3d(Vector3d::UnitZ()));
+		m_nodeNormals.push_back(
+			normal.norm() > 0.0 ? normal.normalized() : Vector3d(Vector3d::UnitZ()));
 		m_nodeComponents.push_back(component);
 		m_around.emplace_back();
 		m_kept.push_back(0);
@@ -98,9 +107,9 @@ private:
 	Index addEdge(Index from, Index to) // its first half-edge
 	{
 		HalfEdgeGraph::Edge edge;
-		edge.from      = from;
-		edge.to        = to;
-		edge.tangentTo = m_positions[from] - m_positions[to];
+		edge.from         = from;
+		edge.to           = to;
+		edge.tangentTo    = m_positions[from] - m_positions[to];
 		edge.tangentFrom  = -edge.tangentTo;
 		edge.middle       = 0.5 * (m_positions[from] + m_positions[to]);
 		edge.middleNormal = (m_nodeNormals[from] + m_nodeNormals[to]).normalized();
@@ -138,10 +147,10 @@ private:
 		for (int c = 0; c < side; ++c)
 			p.rank += static_cast<int>(m_curves.points[m_mesh.edgeOf(t, c)].size());
 		p.rank += ahead ? end.point : count - 1 - end.point;
-		const double   along = m_curves.points[end.edge][end.point].t;
+		const double   along     = m_curves.points[end.edge][end.point].t;
 		const Vector2d corners[] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-		const double   s = ahead ? along : 1.0 - along;
-		p.at             = (1.0 - s) * corners[side] + s * corners[(side + 1) % 3];
+		const double   s         = ahead ? along : 1.0 - along;
+		p.at                     = (1.0 - s) * corners[side] + s * corners[(side + 1) % 3];
 		return p;
 	}
 
@@ -149,7 +158,8 @@ private:
 	{
 		const auto& chords = m_curves.chords;
 		for (std::size_t begin = 0, end; begin < chords.size(); begin = end) {
-			for (end = begin; end < chords.size() && chords[end].triangle == chords[begin].triangle;)
+			for (end = begin;
+				 end < chords.size() && chords[end].triangle == chords[begin].triangle;)
 				++end;
 			const Index t = chords[begin].triangle;
 			m_local.clear();
@@ -171,7 +181,7 @@ private:
 			int   order;
 			Index node;
 			bool  first; // of the two chords: owns the order of half-edges
-			bool operator<(const Crossing& o) const { return order < o.order; }
+			bool  operator<(const Crossing& o) const { return order < o.order; }
 		};
 		std::vector<std::vector<Crossing>> along(n);
 		struct Meeting {
@@ -184,8 +194,8 @@ private:
 			for (std::size_t q = p + 1; q < n; ++q) {
 				if (!m_local[p].crosses(m_local[q]))
 					continue;
-				const double   s  = parameterAlong(m_local[p], m_local[q]);
-				const Vector2d at = (1.0 - s) * m_local[p].a.at + s * m_local[p].b.at;
+				const double   s        = parameterAlong(m_local[p], m_local[q]);
+				const Vector2d at       = (1.0 - s) * m_local[p].a.at + s * m_local[p].b.at;
 				Vector3d       position = Vector3d::Zero(), normal = Vector3d::Zero();
 				const double   share[] = {1.0 - at.sum(), at.x(), at.y()};
 				for (int c = 0; c < 3; ++c) {
@@ -201,7 +211,7 @@ private:
 		}
 		for (std::size_t k = 0; k < n; ++k) {
 			std::sort(along[k].begin(), along[k].end());
-			Index last = m_local[k].a.node, back = -1;
+			Index      last = m_local[k].a.node, back = -1;
 			const auto arrive = [&](Index node) {
 				const Index h = addEdge(last, node);
 				if (back < 0)
@@ -211,11 +221,11 @@ private:
 				return h + 1;
 			};
 			for (const Crossing& crossing : along[k]) {
-				const Index twin = arrive(crossing.node);
-				const Index slot = crossing.first ? 0 : 2;
+				const Index twin                                   = arrive(crossing.node);
+				const Index slot                                   = crossing.first ? 0 : 2;
 				meetings[crossing.node - firstNode].half[slot + 1] = twin;
-				last = crossing.node;
-				back = slot;
+				last                                               = crossing.node;
+				back                                               = slot;
 			}
 			leaveBorder(t, m_local[k].b.node, arrive(m_local[k].b.node));
 		}
@@ -223,8 +233,8 @@ private:
 			// Counter-clockwise from forward along the first: what lies to its left comes next.
 			const auto& h = meetings[m].half;
 			m_around[firstNode + static_cast<Index>(m)] =
-				meetings[m].otherFromRight ? std::vector<Index>{h[0], h[2], h[1], h[3]} :
-											 std::vector<Index>{h[0], h[3], h[1], h[2]};
+				meetings[m].otherFromRight ? std::vector<Index>{h[0], h[2], h[1], h[3]}
+										   : std::vector<Index>{h[0], h[3], h[1], h[2]};
 		}
 	}
 
@@ -233,7 +243,8 @@ private:
 	{
 		const auto e = static_cast<Index>(
 						   std::upper_bound(m_firstPoint.begin(), m_firstPoint.end(), node) -
-						   m_firstPoint.begin()) - 1;
+						   m_firstPoint.begin()) -
+					   1;
 		m_chordAt[node][m_mesh.edges()[e].left == t ? 0 : 1] = h;
 	}
 
@@ -255,9 +266,9 @@ private:
 			const bool feature = edge.isRim() || m_features.edge[e];
 			Index      last    = m_vertexNode[edge.from];
 			for (Index p = m_firstPoint[e]; p <= m_firstPoint[e + 1]; ++p) {
-				const bool  atEnd = p == m_firstPoint[e + 1];
-				const Index next  = atEnd ? m_vertexNode[edge.to] : p;
-				const Index h     = addEdge(last, next);
+				const bool  atEnd        = p == m_firstPoint[e + 1];
+				const Index next         = atEnd ? m_vertexNode[edge.to] : p;
+				const Index h            = addEdge(last, next);
 				m_edges.back().isFeature = feature;
 				m_edges.back().outside   = edge.left < 0 ? 0 : edge.right < 0 ? 1 : -1;
 				m_removable.back()       = !feature;
@@ -330,12 +341,14 @@ private:
 	std::vector<char>                m_kept, m_removable;
 	Index                            m_crossings = 0;
 
-	std::vector<Index>                m_firstPoint; // node of the first point of every edge
-	std::vector<std::array<Index, 2>> m_chordAt;    // of every edge point: half-edges into the left and right
-	std::vector<std::array<Index, 2>> m_alongAt;    // and forward and backward along the edge
-	std::vector<std::array<Index, 2>> m_leaving;    // of every edge: half-edges at from and to along it
-	std::vector<Index>                m_vertexNode;
-	std::vector<BorderChord>          m_local; // of one triangle
+	std::vector<Index> m_firstPoint; // node of the first point of every edge
+	std::vector<std::array<Index, 2>>
+		m_chordAt; // of every edge point: half-edges into the left and right
+	std::vector<std::array<Index, 2>> m_alongAt; // and forward and backward along the edge
+	std::vector<std::array<Index, 2>>
+							 m_leaving; // of every edge: half-edges at from and to along it
+	std::vector<Index>       m_vertexNode;
+	std::vector<BorderChord> m_local; // of one triangle
 };
 
 // Deletes removable edges between different faces: what stays joins every face to one disk.
@@ -412,15 +425,17 @@ SurfaceArrangement arrangeOnSurface(
 	std::vector<Index> nodeComponents = builder.nodeComponents();
 	std::vector<Index> excess         = certificate(mesh, component, graph, nodeComponents);
 	if (std::any_of(excess.begin(), excess.end(), [](Index e) { return e != 0; })) {
-		std::transform(excess.begin(), excess.end(), filled.begin(), [](Index e) { return e != 0; });
+		std::transform(
+			excess.begin(), excess.end(), filled.begin(), [](Index e) { return e != 0; });
 		const GraphBuilder whole(mesh, normals, features, curves, component, filled);
 		graph = whole.graph();
 		mergeFaces(graph, whole.removable());
 		graph.reduce();
-		nodeComponents                = whole.nodeComponents();
-		result.repairedComponents     = static_cast<Index>(std::count(filled.begin(), filled.end(), char(1)));
-		excess = certificate(mesh, component, graph, nodeComponents);
-		result.lostComponents         = static_cast<Index>(
+		nodeComponents = whole.nodeComponents();
+		result.repairedComponents =
+			static_cast<Index>(std::count(filled.begin(), filled.end(), char(1)));
+		excess                = certificate(mesh, component, graph, nodeComponents);
+		result.lostComponents = static_cast<Index>(
 			std::count_if(excess.begin(), excess.end(), [](Index e) { return e != 0; }));
 		result.repairedComponents -= result.lostComponents;
 	}

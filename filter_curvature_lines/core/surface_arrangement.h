@@ -11,14 +11,15 @@ namespace curvature_lines {
 
 // What is in the mesh whatever the curves do. Rims are always.
 struct SurfaceFeatures {
-	std::vector<char> edge;   // of every edge of the triangles: a piece of a crease
-	std::vector<char> corner; // of every vertex: a vertex of the mesh when a rim or crease runs through it
+	std::vector<char> edge; // of every edge of the triangles: a piece of a crease
+	std::vector<char>
+		corner; // of every vertex: a vertex of the mesh when a rim or crease runs through it
 };
 
 struct SurfaceArrangement {
 	PolygonMesh       mesh;
 	std::vector<char> onFeature; // of every vertex: lies on a rim or crease
-	Index             crossings = 0;
+	Index             crossings          = 0;
 	Index             repairedComponents = 0; // the curves alone left a face that was no disk
 	Index             lostComponents     = 0; // that carry no face
 };

@@ -22,7 +22,7 @@ struct SurfaceCurves {
 	};
 	std::vector<std::vector<EdgePoint>> points; // of every edge, by increasing t
 	std::vector<Chord>                  chords; // by triangle
-	Index                               ends = 0; // edge points without a chord in one of their triangles
+	Index ends = 0; // edge points without a chord in one of their triangles
 };
 
 // The lines on which a phase is an integer. Pinned vertices have integers exactly: the line that runs

@@ -31,8 +31,7 @@ std::vector<Side> sortedSides(const std::vector<Triangle>& triangles)
 	sides.reserve(3 * triangles.size());
 	for (std::size_t t = 0; t < triangles.size(); ++t)
 		for (int c = 0; c < 3; ++c)
-			sides.push_back(
-				{triangles[t][c], triangles[t][(c + 1) % 3], static_cast<Index>(t), c});
+			sides.push_back({triangles[t][c], triangles[t][(c + 1) % 3], static_cast<Index>(t), c});
 	std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
 		return std::make_tuple(a.low(), a.high(), a.triangle) <
 			   std::make_tuple(b.low(), b.high(), b.triangle);
@@ -47,8 +46,8 @@ bool sameEdge(const Side& a, const Side& b)
 
 } // namespace
 
-std::vector<Triangle> manifoldPart(
-	const std::vector<Triangle>& triangles, Index vertexCount, std::vector<Index>& copyOf)
+std::vector<Triangle>
+manifoldPart(const std::vector<Triangle>& triangles, Index vertexCount, std::vector<Index>& copyOf)
 {
 	const auto key = [](Index a, Index b) {
 		return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
@@ -82,7 +81,7 @@ std::vector<Triangle> manifoldPart(
 			const Index fan = fans.find(static_cast<Index>(3 * t + c)), v = kept[t][c];
 			if (nameOf[fan] < 0) {
 				if (fanOf[v] < 0) {
-					fanOf[v] = fan;
+					fanOf[v]    = fan;
 					nameOf[fan] = v;
 				}
 				else {
@@ -101,9 +100,10 @@ TriangleMesh::TriangleMesh(Eigen::Matrix3Xd positions, std::vector<Triangle> tri
 		m_sides(m_triangles.size())
 {
 	for (const Side& side : sortedSides(m_triangles)) {
-		if (m_edges.empty() || m_edges.back().from != side.low() || m_edges.back().to != side.high())
+		if (m_edges.empty() || m_edges.back().from != side.low() ||
+			m_edges.back().to != side.high())
 			m_edges.push_back({side.low(), side.high()});
-		Edge& edge = m_edges.back();
+		Edge& edge                                     = m_edges.back();
 		(side.from < side.to ? edge.left : edge.right) = side.triangle;
 		m_sides[side.triangle][side.corner]            = edgeCount() - 1;
 	}
@@ -162,7 +162,8 @@ Eigen::VectorXd TriangleMesh::cotangentWeights() const
 		const double doubleArea = 2.0 * areaVector(t).norm() + 1e-300;
 		for (int c = 0; c < 3; ++c) {
 			const Eigen::Vector3d apex = vertices.col(m_triangles[t][(c + 2) % 3]);
-			const Eigen::Vector3d a = vertices.col(m_triangles[t][c]), b = vertices.col(m_triangles[t][(c + 1) % 3]);
+			const Eigen::Vector3d a    = vertices.col(m_triangles[t][c]),
+								  b    = vertices.col(m_triangles[t][(c + 1) % 3]);
 			weights[edgeOf(t, c)] += 0.5 * (a - apex).dot(b - apex) / doubleArea;
 		}
 	}

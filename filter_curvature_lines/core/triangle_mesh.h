@@ -14,15 +14,16 @@ using Triangle = std::array<Index, 3>; // counter-clockwise seen from outside
 // Those triangles, in order, that leave every edge with at most two triangles that run along it in opposite
 // directions. Vertices whose triangles do not form one fan are split: their copies get new numbers from
 // `vertexCount` on, and their originals are appended to `copyOf`.
-std::vector<Triangle> manifoldPart(
-	const std::vector<Triangle>& triangles, Index vertexCount, std::vector<Index>& copyOf);
+std::vector<Triangle>
+manifoldPart(const std::vector<Triangle>& triangles, Index vertexCount, std::vector<Index>& copyOf);
 
 class TriangleMesh {
 public:
 	struct Edge {
-		Index from, to;              // from < to
-		Index left = -1, right = -1; // triangle that runs along the edge from -> to, and back; -1: a rim
-		bool  isRim() const { return left < 0 || right < 0; }
+		Index from, to; // from < to
+		Index left  = -1,
+			  right = -1; // triangle that runs along the edge from -> to, and back; -1: a rim
+		bool isRim() const { return left < 0 || right < 0; }
 	};
 
 	TriangleMesh() = default;
@@ -49,7 +50,8 @@ public:
 	{
 		return vertices.col(m_edges[edge].to) - vertices.col(m_edges[edge].from);
 	}
-	Eigen::Vector3d areaVector(Index triangle) const; // along the outward normal, as long as the area
+	Eigen::Vector3d
+	areaVector(Index triangle) const; // along the outward normal, as long as the area
 
 	Eigen::VectorXd  vertexAreas() const;   // a third of the triangles around
 	Eigen::Matrix3Xd vertexNormals() const; // unit, of the triangles around
@@ -58,8 +60,9 @@ public:
 
 	// Vertex loops with the surface on the left.
 	std::vector<std::vector<Index>> rims() const;
-	std::vector<Index>              components() const; // of every vertex: the smallest vertex it hangs together with
-	Index                           eulerCharacteristic() const; // V - E + T over used vertices
+	std::vector<Index>
+		  components() const; // of every vertex: the smallest vertex it hangs together with
+	Index eulerCharacteristic() const; // V - E + T over used vertices
 
 private:
 	std::vector<Triangle> m_triangles, m_sides;

@@ -22,8 +22,7 @@ samples::SampleRequest request(const std::string& surface, int points)
 	return result;
 }
 
-PositionFieldMeshResult
-meshOf(const test::ExactCloud& exact, double targetVertices)
+PositionFieldMeshResult meshOf(const test::ExactCloud& exact, double targetVertices)
 {
 	PositionFieldMeshOptions options;
 	options.targetVertices = targetVertices;
@@ -33,7 +32,7 @@ meshOf(const test::ExactCloud& exact, double targetVertices)
 // Mean angle of inner edges to the nearest principal direction, degrees.
 double meanAngle(const std::string& name, const PolygonMesh& mesh)
 {
-	const samples::AnalyticSurface&         surface = samples::surface(name);
+	const samples::AnalyticSurface&        surface = samples::surface(name);
 	std::map<std::pair<Index, Index>, int> sides;
 	for (Index f = 0; f < mesh.faceCount(); ++f)
 		for (Index k = 0; k < mesh.faces[f].size(); ++k)
@@ -45,7 +44,7 @@ double meanAngle(const std::string& name, const PolygonMesh& mesh)
 		const Eigen::Vector3d a = mesh.vertices.col(side.first), b = mesh.vertices.col(side.second);
 		const samples::SurfaceFrame frame = surface.frame(surface.project(0.5 * (a + b)));
 		const Eigen::Vector3d       d     = b - a;
-		const double x = std::abs(d.dot(frame.d1)), y = std::abs(d.dot(frame.d2));
+		const double                x = std::abs(d.dot(frame.d1)), y = std::abs(d.dot(frame.d2));
 		sum += std::atan2(std::min(x, y), std::max(x, y)) * 180.0 / EIGEN_PI;
 		count += 1.0;
 	}
@@ -73,7 +72,8 @@ TEST(PositionFieldMesh, TorusIsAllQuadsAlongItsLinesOfCurvature)
 
 TEST(PositionFieldMesh, EllipsoidHasEightConesAndFewOtherFaces)
 {
-	const PositionFieldMeshResult result = meshOf(test::exactCloud(request("ellipsoid", 6000)), 800);
+	const PositionFieldMeshResult result =
+		meshOf(test::exactCloud(request("ellipsoid", 6000)), 800);
 	expectManifold(result, 2, 0);
 	EXPECT_GE(result.topology.quads, 0.96 * result.topology.faces);
 	EXPECT_NEAR(result.topology.vertices, 800, 40);

@@ -33,9 +33,9 @@ PolygonMesh row(Index quads)
 TEST(QuadCleanup, StripsTurnPairsOfPentagonsIntoQuads)
 {
 	for (Index quads = 0; quads < 3; ++quads) {
-		const PolygonMesh before = row(quads);
-		std::vector<char> onFeature(before.vertexCount(), 0);
-		const PolygonMesh after = insertStrips(before, onFeature, 3);
+		const PolygonMesh  before = row(quads);
+		std::vector<char>  onFeature(before.vertexCount(), 0);
+		const PolygonMesh  after = insertStrips(before, onFeature, 3);
 		const MeshTopology a = topologyOf(before), b = topologyOf(after);
 		EXPECT_EQ(a.quads, quads);
 		EXPECT_EQ(b.quads, b.faces);

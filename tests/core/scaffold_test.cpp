@@ -119,9 +119,10 @@ TEST(Scaffold, HoldsTheCreasesAsEdges)
 
 TEST(Scaffold, KeepsLargeComponentsAndCountsSpecks)
 {
-	const PointCloud torus = cloudOf(request("torus", 3000)), sphere = cloudOf(request("sphere", 3000));
-	PointCloud       both;
-	const Index      specks = 6, n = torus.size() + sphere.size() + specks;
+	const PointCloud torus  = cloudOf(request("torus", 3000)),
+					 sphere = cloudOf(request("sphere", 3000));
+	PointCloud  both;
+	const Index specks = 6, n = torus.size() + sphere.size() + specks;
 	both.positions.resize(3, n);
 	both.normals.resize(3, n);
 	both.positions << torus.positions, sphere.positions.colwise() + Eigen::Vector3d(5, 0, 0),

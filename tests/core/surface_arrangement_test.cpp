@@ -19,9 +19,9 @@ namespace {
 TriangleMesh scaffoldOf(const std::string& surface, int points = 1500)
 {
 	samples::SampleRequest request;
-	request.surface                  = surface;
-	request.points                   = points;
-	request.seed                     = 5;
+	request.surface                   = surface;
+	request.points                    = points;
+	request.seed                      = 5;
 	const samples::SampleCloud sample = samples::generate(request);
 	return buildScaffold({sample.positions, sample.normals}).mesh;
 }
@@ -33,7 +33,7 @@ SurfaceFeatures noFeatures(const TriangleMesh& mesh)
 
 // Every family of integer levels as chords; points of both families sorted together.
 SurfaceCurves levelSets(
-	const TriangleMesh& mesh,
+	const TriangleMesh&                                               mesh,
 	const std::vector<std::function<double(const Eigen::Vector3d&)>>& functions)
 {
 	SurfaceCurves curves;
@@ -71,11 +71,11 @@ SurfaceCurves levelSets(
 
 TEST(SurfaceArrangement, ParallelsAndMeridiansOfATorusAreAQuadMesh)
 {
-	const TriangleMesh mesh   = scaffoldOf("torus");
-	const auto         aslant = [](const Eigen::Vector3d& p) { return 7.3 * p.z() + 0.1; };
-	const auto         across = [](const Eigen::Vector3d& p) { return 3.3 * p.x() + 0.3; };
-	const SurfaceArrangement result =
-		arrangeOnSurface(mesh, mesh.vertexNormals(), noFeatures(mesh), levelSets(mesh, {aslant, across}));
+	const TriangleMesh       mesh   = scaffoldOf("torus");
+	const auto               aslant = [](const Eigen::Vector3d& p) { return 7.3 * p.z() + 0.1; };
+	const auto               across = [](const Eigen::Vector3d& p) { return 3.3 * p.x() + 0.3; };
+	const SurfaceArrangement result = arrangeOnSurface(
+		mesh, mesh.vertexNormals(), noFeatures(mesh), levelSets(mesh, {aslant, across}));
 	const MeshTopology topology = topologyOf(result.mesh);
 	EXPECT_EQ(topology.eulerCharacteristic, 0);
 	EXPECT_EQ(topology.boundaryEdges, 0);
@@ -92,7 +92,9 @@ TEST(SurfaceArrangement, RepairsWhatIsNoDisk)
 	for (const char* surface : {"sphere", "torus", "cylinder", "helicoid"}) {
 		const TriangleMesh mesh = scaffoldOf(surface);
 		for (int curves = 0; curves < 2; ++curves) {
-			const auto slice = [&](const Eigen::Vector3d& p) { return curves * (2.1 * p.z() + 0.05) + 0.01; };
+			const auto slice = [&](const Eigen::Vector3d& p) {
+				return curves * (2.1 * p.z() + 0.05) + 0.01;
+			};
 			const SurfaceArrangement result = arrangeOnSurface(
 				mesh, mesh.vertexNormals(), noFeatures(mesh), levelSets(mesh, {slice}));
 			const MeshTopology topology = topologyOf(result.mesh);
@@ -101,7 +103,8 @@ TEST(SurfaceArrangement, RepairsWhatIsNoDisk)
 			if (result.lostComponents == 0) {
 				EXPECT_EQ(topology.eulerCharacteristic, mesh.eulerCharacteristic()) << surface;
 				EXPECT_EQ(topology.components, 1) << surface;
-				EXPECT_EQ(topology.boundaryLoops, static_cast<Index>(mesh.rims().size())) << surface;
+				EXPECT_EQ(topology.boundaryLoops, static_cast<Index>(mesh.rims().size()))
+					<< surface;
 			}
 			else { // only a sphere may carry no edge at all
 				EXPECT_EQ(std::string(surface), "sphere");
@@ -115,14 +118,14 @@ TEST(SurfaceArrangement, RepairsWhatIsNoDisk)
 
 TEST(SurfaceArrangement, CornersOfRimsStay)
 {
-	const TriangleMesh mesh     = scaffoldOf("plane", 600);
-	SurfaceFeatures    features = noFeatures(mesh);
-	const Index        corner   = mesh.rims()[0][3];
-	features.corner[corner]     = 1;
-	const auto across           = [](const Eigen::Vector3d& p) { return 4.1 * p.x() + 0.13; };
-	const auto along            = [](const Eigen::Vector3d& p) { return 4.1 * p.y() + 0.13; };
-	const SurfaceArrangement result = arrangeOnSurface(
-		mesh, mesh.vertexNormals(), features, levelSets(mesh, {across, along}));
+	const TriangleMesh mesh         = scaffoldOf("plane", 600);
+	SurfaceFeatures    features     = noFeatures(mesh);
+	const Index        corner       = mesh.rims()[0][3];
+	features.corner[corner]         = 1;
+	const auto               across = [](const Eigen::Vector3d& p) { return 4.1 * p.x() + 0.13; };
+	const auto               along  = [](const Eigen::Vector3d& p) { return 4.1 * p.y() + 0.13; };
+	const SurfaceArrangement result =
+		arrangeOnSurface(mesh, mesh.vertexNormals(), features, levelSets(mesh, {across, along}));
 	EXPECT_LT(
 		(result.mesh.vertices.colwise() - mesh.vertices.col(corner)).colwise().norm().minCoeff(),
 		1e-12);

@@ -39,8 +39,8 @@ TEST(MatchSides, AllCountsGiveDisjointChordsBetweenDifferentSides)
 			for (const auto& [c, d] : chords)
 				EXPECT_FALSE(a < c && c < b && b < d) << code;
 		// What is left lies on one side, and is as little as parity and the longest side allow.
-		const int sum = counts[0] + counts[1] + counts[2];
-		const int most = *std::max_element(counts.begin(), counts.end());
+		const int sum   = counts[0] + counts[1] + counts[2];
+		const int most  = *std::max_element(counts.begin(), counts.end());
 		const int least = std::max(sum % 2, 2 * most - sum);
 		EXPECT_EQ(sum - 2 * static_cast<int>(arcs.size()), least) << code;
 	}

@@ -25,7 +25,6 @@ constexpr double maxPurityExcess = 40.0;
 struct Scratch {
 	std::vector<Index>    near;
 	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
-	std::vector<double>   precision;
 	LocalSamples<1>       samples;
 	std::vector<double>   residuals;
 
@@ -49,12 +48,10 @@ void gather(
 	scratch.height.clear();
 	scratch.place.clear();
 	scratch.normal.clear();
-	scratch.precision.clear();
 	for (const Index j : scratch.near) {
 		scratch.height.push_back(input.cloud.positions.col(j) - origin);
 		scratch.place.push_back(guide.positions.col(j) - origin);
 		scratch.normal.push_back(guide.normals.col(j));
-		scratch.precision.push_back(precision(input, center, j));
 	}
 	scratch.samples.reserve(scratch.near.size());
 }
@@ -110,7 +107,7 @@ bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
 					p.x(),
 					p.y(),
 					scratch.height[k].dot(patch.frame.n),
-					scratch.precision[k] * supportWeight(p.x(), p.y()));
+					supportWeight(p.x(), p.y()));
 		}
 		if (!fitPatch(patch, scratch.samples, scratch.residuals))
 			return false;
@@ -145,8 +142,7 @@ bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 			const double z = scratch.height[k].dot(patch.frame.n);
 			if (shrink == 1.0 && std::abs(patch.residual({p.x(), p.y(), z})) > cutoff)
 				continue;
-			const double w = gate * scratch.precision[k] *
-							 supportWeight(place.x() / shrink, place.y() / shrink);
+			const double w = gate * supportWeight(place.x() / shrink, place.y() / shrink);
 			addSample(scratch, p.x(), p.y(), z, w);
 		}
 		const SurfacePatch before = patch;
@@ -164,7 +160,7 @@ bool fitBent(SurfacePatch& patch, Scratch& scratch)
 	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
 		const Sight s = bentSight(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
 		if (s.seen)
-			addSample(scratch, s.x, s.y, s.z, scratch.precision[k] * supportWeight(s.x, s.y));
+			addSample(scratch, s.x, s.y, s.z, supportWeight(s.x, s.y));
 	}
 	return fitPatch(patch, scratch.samples, scratch.residuals);
 }
@@ -183,22 +179,13 @@ double purityOf(const SurfacePatch& patch, double noise, double rate)
 
 double supportRadius(const BlendInput& input, const BlendOptions& options, Index i)
 {
-	const double radius = options.radius * (input.unit.empty() ? input.spacing[i] : input.unit[i]);
-	return input.floor.empty() ? radius : std::max(radius, input.floor[i]);
+	return options.radius * input.spacing[i];
 }
 
 // Guides of the other supports have left the noise behind.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
 	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i]) : radius;
-}
-
-double precision(const BlendInput& input, Index i, Index j)
-{
-	if (input.evenNoise)
-		return 1.0;
-	const double ratio = input.noise[i] / input.noise[j];
-	return ratio * ratio;
 }
 
 double gateWeight(double e2)

@@ -13,11 +13,8 @@ namespace curvature_lines {
 struct BlendInput {
 	SpatialOrder        order;
 	PointCloud          cloud;
-	std::vector<double> spacing; // per point, smooth: side of the square that holds one point
+	std::vector<double> spacing; // per point, smooth: the unit of radii
 	std::vector<double> noise;   // per point: standard deviation of the positions, a length
-	bool                evenNoise = true; // the same for all points
-	std::vector<double> unit;    // per point: the unit of radii; the spacing if there are none
-	std::vector<double> floor;   // per point: least radius, if any
 };
 
 // Where the points are thought to be: tells frames and gates. Heights are always those of the input,
@@ -33,7 +30,7 @@ struct BlendOptions {
 		Bent,  // arc lengths along the guide instead of their projection: reaches further round a bend
 	};
 	Support support    = Support::Free;
-	double  radius     = 5.0; // in units
+	double  radius     = 5.0; // in local spacings
 	double  gateWidth  = 0.7; // Gated: deviation from the linear normal that quarters a weight
 	double  purity     = 0.0; // how fast a patch loses weight as its residuals exceed the noise
 	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: no limit
@@ -73,9 +70,6 @@ double gateWeight(double e2);
 
 // Normals that oppose each other further are of another sheet (cosine).
 constexpr double minOpposing = -0.2;
-
-// Weight of point j in the patch at i by its noise.
-double precision(const BlendInput& input, Index i, Index j);
 
 // Of the patch at a point, and of the ball that holds all points the patch may see.
 double supportRadius(const BlendInput& input, const BlendOptions& options, Index i);

@@ -178,16 +178,10 @@ private:
 };
 
 // Wide patches need fewer centres to overlap as much.
-std::vector<Index> centersOf(const BlendInput& input, const BlendOptions& options)
+Index centerCount(Index n, const BlendOptions& options)
 {
-	const Index        n = input.cloud.size();
-	std::vector<Index> centers;
-	for (Index i = 0; i < n; ++i) {
-		const double radius = supportRadius(input, options, i) / input.spacing[i];
-		if (input.order.rank[i] * EIGEN_PI * radius * radius < options.overlap * n)
-			centers.push_back(i);
-	}
-	return centers;
+	const double points = EIGEN_PI * options.radius * options.radius; // of a patch
+	return std::max<Index>(1, static_cast<Index>(n * std::min(1.0, options.overlap / points)));
 }
 
 CoveringPatches::CoveringPatches(
@@ -199,7 +193,7 @@ CoveringPatches::CoveringPatches(
 		m_input(input),
 		m_guide(guide),
 		m_options(options),
-		m_points(centersOf(input, options)),
+		m_points(input.order.sample(centerCount(input.cloud.size(), options))),
 		m_centers(columnsOf(guide.positions, m_points)),
 		m_search(m_centers),
 		m_patches(m_centers.cols())
@@ -262,15 +256,14 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 				 patch.surface.origin - position,
 				 p.residual,
 				 p.weight * patch.purity});
-		const double known = precision(m_input, i, m_points[j]);
-		const double w = p.weight * p.gate * patch.purity * known;
+		const double w = p.weight * p.gate * patch.purity;
 		if (w <= 0.0)
 			continue;
 		const double a = w * acceptance(m_options, p.residual, noise);
-		total += p.weight * p.gate * known;
+		total += p.weight * p.gate;
 		pure += w;
 		residual += w * p.residual;
-		influence += w * p.influence / known;
+		influence += w * p.influence;
 		accepted += a;
 		move -= a * p.move * p.direction;
 		direction += a * p.normal;

@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "noise_estimate.h"
 #include "patch_blend.h"
 #include "quantile.h"
 
@@ -20,6 +19,9 @@ using Support = BlendOptions::Support;
 constexpr const char* stage = "Denoising";
 
 // Radii in local spacings.
+constexpr double smallestRadius  = 2.5; // 20 points: a quadric with some to spare
+constexpr double noiseStep       = 1.26;
+constexpr double minRadiusNoise  = 5.0; // a patch narrower than this many noise units is all noise
 constexpr double freeStep        = 1.4;
 constexpr double maxFreeRadius   = 15.0;
 constexpr double freeTolerance   = 1.02; // of scores over the best: the end of a ladder
@@ -28,16 +30,15 @@ constexpr double bentStart       = 0.8; // of the free radius
 constexpr double maxBentRadius   = 25.0;
 constexpr double bentTolerance   = 1.01;
 // Scores as good as the same: the wider patch has less variance.
-constexpr double bentTie         = 1.0007;
+constexpr double bentTie         = 1.001;
 constexpr double gatedStep       = 1.3;
 constexpr double maxGatedRadius  = 17.0;
 constexpr double gatedTolerance  = 1.015;
 constexpr double minPilotRadius  = 3.2;
 constexpr double pilotNoise      = 8.0; // noise units across which an edge is told from noise
-constexpr double minFlagRadius   = 5.0; // edges have to show
 constexpr double maxFlagRadius   = 6.3;
+constexpr double minNoise        = 1e-10; // a length: of exact samples
 constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
-constexpr double radiusExponent  = 0.2;
 
 constexpr Index  fewestPoints    = 8; // a quadric and a residual
 constexpr Index  testPoints      = 5000;
@@ -62,6 +63,45 @@ double quantile(std::vector<double> values, double share)
 	return quantileInPlace(values, share);
 }
 
+// Side of the square that holds one point, averaged over some hundred neighbours: radii of patches
+// that overlap have to be alike.
+std::vector<double>
+localSpacing(const PointCloud& cloud, const SpatialOrder& order, const Progress& progress)
+{
+	constexpr Index      k = 16, averaged = 32, thinning = 8;
+	const Index          n = cloud.size();
+	const NeighborSearch search(cloud.positions);
+	std::vector<double>  raw(n), smooth(n);
+	parallelFor(n, progress.sub(0.0, 0.5, stage), [&](Index i) {
+		const std::vector<Index> near = search.nearest(cloud.positions.col(i), k + 1);
+		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
+		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
+	});
+	const std::vector<Index> sample =
+		order.sample(std::max(std::min(n, averaged), n / thinning));
+	const Eigen::Matrix3Xd places = columnsOf(cloud.positions, sample);
+	const NeighborSearch   sampleSearch(places);
+	parallelFor(n, progress.sub(0.5, 1.0, stage), [&](Index i) {
+		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
+		double                   sum  = 0.0;
+		for (const Index j : near)
+			sum += std::log(raw[sample[j]]);
+		smooth[i] = std::exp(sum / double(near.size()));
+	});
+	return smooth;
+}
+
+// The lower quartile belongs to patches off the edges; chi-squared quantile by Wilson and Hilferty.
+double noiseOf(const PatchBlend& blend)
+{
+	if (blend.variance.empty())
+		return 0.0;
+	const double degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
+	const double spread   = 2.0 / (9.0 * degrees);
+	const double expected = std::pow(1.0 - spread - 0.6744898 * std::sqrt(spread), 3);
+	return std::sqrt(quantile(blend.variance, 0.25) / expected);
+}
+
 // Ladders end where the data say: every rung takes a share of what is left of their time.
 Progress rung(const Progress& progress, int k)
 {
@@ -83,7 +123,6 @@ public:
 private:
 	Index      size() const { return m_input.cloud.size(); }
 	void       findNoise(const Progress& progress);
-	void       findUnits();
 	void       findPlainPoints(const Progress& progress);
 	double     freeRadius(const Progress& progress) const;
 	double     bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
@@ -94,7 +133,6 @@ private:
 	Candidate  sharpCandidate(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	double     pilotRadius(double widest) const;
-	double     radiusInSpacings(double radius) const;
 	std::vector<double> sharpShare(
 		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
 	void       sharpen(Candidate& smooth, const Progress& progress) const;
@@ -114,12 +152,12 @@ private:
 	std::vector<Index>     m_plain;            // of m_test, off the edges
 	double                 m_spacing     = 0.0; // median
 	double                 m_noise       = 0.0;
-	double                 m_firstRadius = smallestPatch; // where patches are wider than the noise
+	double                 m_firstRadius = smallestRadius; // where patches are wider than the noise
 };
 
 RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
 		m_options(options),
-		m_input{SpatialOrder(cloud.positions), {}, {}, {}, true, {}, {}},
+		m_input{SpatialOrder(cloud.positions), {}, {}, {}},
 		m_everywhere(cloud.size()),
 		m_test(m_input.order.sample(testPoints)),
 		m_plain(m_test)
@@ -155,31 +193,21 @@ double RobustDenoiser::score(const Candidate& candidate, const std::vector<Index
 
 void RobustDenoiser::findNoise(const Progress& progress)
 {
-	if (m_options.noise > 0.0)
-		m_input.noise.assign(size(), m_options.noise);
-	else
-		m_input.noise = estimateNoise(m_input, progress);
-	m_noise           = quantile(m_input.noise, 0.5);
-	const auto bounds = std::minmax_element(m_input.noise.begin(), m_input.noise.end());
-	m_input.evenNoise = *bounds.first == *bounds.second;
-}
-
-// The error of a quadric grows with the fourth power of its radius R, and the variance of its prediction is
-// (noise spacing / R)^2: the best radius goes with the fifth root of noise and spacing, on the same surface.
-void RobustDenoiser::findUnits()
-{
-	std::vector<double> narrowest;
-	if (m_options.radius <= 0.0)
-		for (Index i = 0; i < size(); ++i) {
-			const double spacing = m_input.spacing[i], noise = m_input.noise[i];
-			m_input.floor.push_back(std::max(smallestPatch * spacing, minRadiusNoise * noise));
-			m_input.unit.push_back(
-				m_spacing * std::pow(noise * spacing / (m_noise * m_spacing), radiusExponent));
-			narrowest.push_back(m_input.floor[i] / m_input.unit[i]);
+	m_input.noise.assign(size(), m_options.noise);
+	m_noise = m_options.noise;
+	BlendOptions options;
+	options.overlap = testOverlap;
+	options.radius  = smallestRadius;
+	for (int k = 0;; ++k, options.radius *= noiseStep) {
+		m_firstRadius = options.radius;
+		if (m_options.noise <= 0.0) {
+			m_noise = std::max(
+				minNoise, noiseOf(blendPatches(m_input, m_start, options, m_test, rung(progress, k))));
+			m_input.noise.assign(size(), m_noise);
 		}
-	m_firstRadius = narrowest.empty() ?
-						std::max(smallestPatch, minRadiusNoise * m_noise / m_spacing) :
-						quantileInPlace(narrowest, 0.5);
+		if (m_noise * minRadiusNoise < options.radius * m_spacing || !fits(options.radius * noiseStep))
+			return;
+	}
 }
 
 // Edges would make any wide patch look wrong, and the whole cloud would be smoothed too little.
@@ -188,7 +216,7 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 	BlendOptions options;
 	options.purity = strictPurity;
 	options.radius = std::clamp(
-		pilotNoise * m_noise / m_spacing, minFlagRadius, maxFlagRadius);
+		pilotNoise * m_noise / m_spacing, minPilotRadius, std::max(minPilotRadius, maxFlagRadius));
 	options.radius         = std::max(options.radius, m_firstRadius);
 	const PatchBlend blend = blendPatches(m_input, m_start, options, m_test, progress);
 	std::vector<Index> plain;
@@ -377,22 +405,11 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 	}
 }
 
-double RobustDenoiser::radiusInSpacings(double radius) const
-{
-	BlendOptions options;
-	options.radius = radius;
-	std::vector<double> radii;
-	for (Index i = 0; i < size(); ++i)
-		radii.push_back(supportRadius(m_input, options, i) / m_input.spacing[i]);
-	return quantileInPlace(radii, 0.5);
-}
-
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
 	m_input.spacing = localSpacing(m_input.cloud, m_input.order, progress.sub(0.0, 0.05, stage));
 	m_spacing       = quantile(m_input.spacing, 0.5);
 	findNoise(progress.sub(0.05, 0.15, stage));
-	findUnits();
 	findPlainPoints(progress.sub(0.15, 0.2, stage));
 	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
@@ -401,7 +418,7 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	result.positions = m_input.order.restore(cleaned.blend.positions);
 	result.normals   = m_input.order.restore(cleaned.blend.normals);
 	result.noise  = m_noise;
-	result.radius = radiusInSpacings(cleaned.radius);
+	result.radius = cleaned.radius;
 	return result;
 }
 

@@ -12,7 +12,6 @@
 
 #include "core/neighborhoods.h"
 #include "core/robust_denoising.h"
-#include "core/spatial_order.h"
 #include "sample_data/analytic_surfaces.h"
 
 namespace curvature_lines::test {
@@ -195,57 +194,6 @@ TEST(RobustDenoising, FollowsTheDensity)
 	const auto result = denoiseRobustly(uneven);
 	EXPECT_LT(noisy.remaining(result.positions, dense), 0.25);
 	EXPECT_LT(noisy.remaining(result.positions, sparse), 0.45);
-}
-
-// Noise and density that both vary tenfold around the torus: every part is cleaned as well as it is alone.
-TEST(RobustDenoising, FollowsTheNoise)
-{
-	for (const bool noisyWhereDense : {true, false}) {
-		SCOPED_TRACE(noisyWhereDense);
-		NoisyCloud         varied("torus", 24000, 0.0);
-		samples::Random    random(5, 1);
-		std::vector<Index> kept;
-		std::vector<double> place, noise;
-		for (Index i = 0; i < varied.cloud.size(); ++i) {
-			const Vector3d p = varied.cloud.positions.col(i);
-			const double   t = 0.5 + 0.5 * p.x() / p.head<2>().norm();
-			if (random.uniform(0.0, 1.0) >= std::pow(10.0, t - 1.0))
-				continue;
-			kept.push_back(i);
-			place.push_back(t);
-			noise.push_back(0.001 * std::pow(10.0, noisyWhereDense ? t : 1.0 - t));
-		}
-		const auto part = [&](double from, double to) {
-			std::vector<Index> points;
-			for (std::size_t k = 0; k < kept.size(); ++k)
-				if (place[k] >= from && place[k] <= to)
-					points.push_back(static_cast<Index>(k));
-			return points;
-		};
-		varied.cloud = {
-			columnsOf(varied.cloud.positions, kept), columnsOf(varied.cloud.normals, kept)};
-		for (std::size_t k = 0; k < kept.size(); ++k)
-			varied.cloud.positions.col(k) += noise[k] * random.normal3();
-		estimateNormals(varied.cloud);
-		const PointCloud whole   = varied.cloud;
-		const auto       cleaned = denoiseRobustly(whole);
-		for (const double from : {0.0, 0.4, 0.8}) {
-			SCOPED_TRACE(from);
-			const std::vector<Index> inner = part(from, from + 0.2);
-			const std::vector<Index> outer = part(from - 0.12, from + 0.32);
-			varied.cloud                   = whole;
-			const double together          = varied.remaining(cleaned.positions, inner);
-			std::vector<Index> innerOfOuter;
-			for (std::size_t k = 0; k < outer.size(); ++k)
-				if (place[outer[k]] >= from && place[outer[k]] <= from + 0.2)
-					innerOfOuter.push_back(static_cast<Index>(k));
-			varied.cloud = {
-				columnsOf(whole.positions, outer), columnsOf(whole.normals, outer)};
-			const double alone =
-				varied.remaining(denoiseRobustly(varied.cloud).positions, innerOfOuter);
-			EXPECT_LT(together, 1.3 * alone);
-		}
-	}
 }
 
 TEST(RobustDenoising, HardlyMovesACleanCloud)

@@ -21,7 +21,6 @@ endfunction()
 
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 require_package(Eigen3 libeigen3-dev NO_MODULE)
-require_package(nanoflann libnanoflann-dev)
 require_package(CGAL "libcgal-dev libgmp-dev libmpfr-dev")
 require_package(OpenMP g++)
 require_headers(LBFGSpp LBFGSB.h liblbfgspp-dev)

@@ -7,142 +7,14 @@
 #include <cmath>
 #include <limits>
 
-#include <nanoflann.hpp>
-
 #include "quantile.h"
 
 namespace curvature_lines {
 
 namespace {
 
-using DistanceIndex = std::pair<double, Index>;
-
-struct PositionsAdaptor {
-	const Eigen::Matrix3Xd& positions;
-
-	std::size_t kdtree_get_point_count() const { return positions.cols(); }
-	double      kdtree_get_pt(std::size_t i, std::size_t c) const { return positions(c, i); }
-	template<class Box>
-	bool kdtree_get_bbox(Box&) const
-	{
-		return false;
-	}
-};
-
-// The tree accumulates its lower bounds in floating point and compares strictly; the margin keeps points
-// that tie with the limit, so that the exact (distance, index) order below decides and not the tree's.
-constexpr double tieMargin = 1.0 + 1e-12;
-
-class NearestSet {
-public:
-	using DistanceType = double;
-	NearestSet(std::vector<DistanceIndex>& heap, std::size_t capacity) :
-			m_heap(heap), m_capacity(capacity)
-	{
-		m_heap.clear();
-	}
-	std::size_t size() const { return m_heap.size(); }
-	bool        full() const { return m_heap.size() == m_capacity; }
-	void        sort() { std::sort_heap(m_heap.begin(), m_heap.end()); }
-	double      worstDist() const
-	{
-		return full() ? m_heap.front().first * tieMargin + std::numeric_limits<double>::min() :
-						std::numeric_limits<double>::max();
-	}
-	bool addPoint(double distance, Index index)
-	{
-		const DistanceIndex candidate(distance, index);
-		if (full()) {
-			if (!(candidate < m_heap.front()))
-				return true;
-			std::pop_heap(m_heap.begin(), m_heap.end());
-			m_heap.back() = candidate;
-		}
-		else {
-			m_heap.push_back(candidate);
-		}
-		std::push_heap(m_heap.begin(), m_heap.end());
-		return true;
-	}
-
-private:
-	std::vector<DistanceIndex>& m_heap;
-	std::size_t                 m_capacity;
-};
-
-class BallSet {
-public:
-	using DistanceType = double;
-	BallSet(std::vector<DistanceIndex>& found, double squaredRadius) :
-			m_found(found), m_squaredRadius(squaredRadius)
-	{
-		m_found.clear();
-	}
-	std::size_t size() const { return m_found.size(); }
-	bool        full() const { return true; }
-	void        sort() {}
-	double      worstDist() const
-	{
-		return m_squaredRadius * tieMargin + std::numeric_limits<double>::min();
-	}
-	bool addPoint(double distance, Index index)
-	{
-		if (distance <= m_squaredRadius)
-			m_found.emplace_back(distance, index);
-		return true;
-	}
-
-private:
-	std::vector<DistanceIndex>& m_found;
-	double                      m_squaredRadius;
-};
-
-class UnsortedBallSet {
-public:
-	using DistanceType = double;
-	UnsortedBallSet(std::vector<Index>& found, double squaredRadius) :
-			m_found(found), m_squaredRadius(squaredRadius)
-	{
-		m_found.clear();
-	}
-	std::size_t size() const { return m_found.size(); }
-	bool        full() const { return true; }
-	void        sort() {}
-	double      worstDist() const { return m_squaredRadius; }
-	bool        addPoint(double, Index index)
-	{
-		m_found.push_back(index);
-		return true;
-	}
-
-private:
-	std::vector<Index>& m_found;
-	double              m_squaredRadius;
-};
-
-// Ends the search at the first point it meets.
-class FirstInBall {
-public:
-	using DistanceType = double;
-	explicit FirstInBall(double squaredRadius) : m_squaredRadius(squaredRadius) {}
-	std::size_t size() const { return m_found ? 1 : 0; }
-	bool        full() const { return true; }
-	void        sort() {}
-	double      worstDist() const { return m_squaredRadius; }
-	bool        addPoint(double, Index)
-	{
-		m_found = true;
-		return false;
-	}
-
-private:
-	bool   m_found = false;
-	double m_squaredRadius;
-};
-
-std::vector<Index> sortedIndices(std::vector<DistanceIndex>& found)
+std::vector<Index> indicesOf(const std::vector<BoxTree::Found>& found)
 {
-	std::sort(found.begin(), found.end());
 	std::vector<Index> indices(found.size());
 	std::transform(found.begin(), found.end(), indices.begin(), [](const auto& f) {
 		return f.second;
@@ -250,65 +122,25 @@ double positiveMedian(const std::vector<double>& values)
 
 } // namespace
 
-struct NeighborSearch::Tree {
-	using Metric = nanoflann::L2_Simple_Adaptor<double, PositionsAdaptor, double, Index>;
-	using Index3 = nanoflann::KDTreeSingleIndexAdaptor<Metric, PositionsAdaptor, 3, Index>;
-
-	explicit Tree(const Eigen::Matrix3Xd& positions) :
-			adaptor {positions}, index(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16))
-	{
-		index.buildIndex();
-	}
-	PositionsAdaptor adaptor;
-	Index3           index;
-};
-
-NeighborSearch::NeighborSearch(const Eigen::Matrix3Xd& positions) :
-		m_tree(std::make_unique<Tree>(positions))
-{
-}
-
-NeighborSearch::~NeighborSearch()                                    = default;
-NeighborSearch::NeighborSearch(NeighborSearch&&) noexcept            = default;
-NeighborSearch& NeighborSearch::operator=(NeighborSearch&&) noexcept = default;
-
 std::vector<Index> NeighborSearch::nearest(const Eigen::Vector3d& query, Index k) const
 {
-	if (k <= 0 || m_tree->adaptor.positions.cols() == 0)
-		return {};
-	thread_local std::vector<DistanceIndex> found;
-	NearestSet                              set(found, k);
-	m_tree->index.radiusSearchCustomCallback(query.data(), set);
-	return sortedIndices(found);
+	thread_local std::vector<BoxTree::Found> found;
+	m_tree.nearest(query, k, found);
+	return indicesOf(found);
 }
 
 std::vector<Index> NeighborSearch::within(const Eigen::Vector3d& query, double radius) const
 {
-	if (!(radius >= 0.0) || m_tree->adaptor.positions.cols() == 0)
-		return {};
-	thread_local std::vector<DistanceIndex> found;
-	BallSet                                 set(found, radius * radius);
-	m_tree->index.radiusSearchCustomCallback(query.data(), set);
-	return sortedIndices(found);
-}
-
-void NeighborSearch::within(
-	const Eigen::Vector3d& query, double radius, std::vector<Index>& found) const
-{
+	thread_local std::vector<Index>          near;
+	thread_local std::vector<BoxTree::Found> found;
+	m_tree.within(query, radius, near);
 	found.clear();
-	if (!(radius >= 0.0) || m_tree->adaptor.positions.cols() == 0)
-		return;
-	UnsortedBallSet set(found, radius * radius);
-	m_tree->index.radiusSearchCustomCallback(query.data(), set);
-}
-
-bool NeighborSearch::anyWithin(const Eigen::Vector3d& query, double radius) const
-{
-	if (!(radius >= 0.0) || m_tree->adaptor.positions.cols() == 0)
-		return false;
-	FirstInBall first(radius * radius);
-	m_tree->index.radiusSearchCustomCallback(query.data(), first);
-	return first.size() > 0;
+	for (const Index i : near) {
+		const Eigen::Vector3d d = m_positions->col(i) - query;
+		found.emplace_back(d.x() * d.x() + d.y() * d.y() + d.z() * d.z(), i); // as the tree sums
+	}
+	std::sort(found.begin(), found.end());
+	return indicesOf(found);
 }
 
 MinimumNeighborhoods minimumNeighborhoods(
@@ -323,7 +155,8 @@ MinimumNeighborhoods minimumNeighborhoods(
 	std::vector<double> freeSpacing(n); // without a threshold on the distance
 	const auto          rowOf = [&](Index i) { return candidates.data() + std::size_t(i) * rowSize; };
 
-	parallelFor(n, progress.sub(0.0, 0.7, "Finding neighbors"), [&](Index i) {
+	parallelFor(n, progress.sub(0.0, 0.7, "Finding neighbors"), [&](Index k) {
+		const Index i = search.spatialOrder()[k];
 		Index* row = rowOf(i);
 		Index* end = row;
 		for (const Index j : search.nearest(cloud.positions.col(i), rowSize + 1))

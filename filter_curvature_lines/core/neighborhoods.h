@@ -3,31 +3,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-
+#include "box_tree.h"
 #include "progress.h"
 
 namespace curvature_lines {
 
-// A kd-tree over fixed positions (nanoflann behind it). The positions must outlive the tree.
+// Neighbour search among fixed positions, which must outlive it.
 class NeighborSearch {
 public:
-	explicit NeighborSearch(const Eigen::Matrix3Xd& positions);
-	~NeighborSearch();
-	NeighborSearch(NeighborSearch&&) noexcept;
-	NeighborSearch& operator=(NeighborSearch&&) noexcept;
+	explicit NeighborSearch(const Eigen::Matrix3Xd& positions) : m_positions(&positions), m_tree(positions) {}
 
 	// Indices of the k nearest points, by increasing distance, ties by index. Fewer if the cloud is smaller.
 	std::vector<Index> nearest(const Eigen::Vector3d& query, Index k) const;
 	// All points within radius, by increasing distance, ties by index.
 	std::vector<Index> within(const Eigen::Vector3d& query, double radius) const;
-	// The same without sorting, into storage the caller keeps: for large balls. The order is fixed.
-	void within(const Eigen::Vector3d& query, double radius, std::vector<Index>& found) const;
-	bool anyWithin(const Eigen::Vector3d& query, double radius) const;
+	// The same in spatial order, into storage the caller keeps: for large balls.
+	void within(const Eigen::Vector3d& query, double radius, std::vector<Index>& found) const
+	{
+		m_tree.within(query, radius, found);
+	}
+	bool anyWithin(const Eigen::Vector3d& query, double radius) const { return m_tree.anyWithin(query, radius); }
+	// All indices so that neighbours mostly follow each other (spatial_order.h).
+	const std::vector<Index>& spatialOrder() const { return m_tree.spatialOrder(); }
 
 private:
-	struct Tree;
-	std::unique_ptr<Tree> m_tree;
+	const Eigen::Matrix3Xd* m_positions;
+	BoxTree                 m_tree;
 };
 
 struct MinimumNeighborhoodOptions {

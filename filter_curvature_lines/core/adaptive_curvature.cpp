@@ -29,7 +29,8 @@ Eigen::Matrix3Xd gateNormals(
 	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
 {
 	Eigen::Matrix3Xd gate(3, cloud.size());
-	parallelFor(cloud.size(), progress, [&](Index i) {
+	parallelFor(cloud.size(), progress, [&](Index k) {
+		const Index              i    = search.spatialOrder()[k];
 		const std::vector<Index> near = search.nearest(cloud.positions.col(i), gateNeighbors);
 		const Eigen::Vector3d    own  = cloud.normals.col(i);
 		Eigen::Vector3d          same = Eigen::Vector3d::Zero(), all = Eigen::Vector3d::Zero();
@@ -70,11 +71,15 @@ public:
 			m_scale(scale), m_subsets(sample, scale.height.radius),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
 			m_anchors(
-				sample,
+				fitAnchors(
+					sample,
+					m_subsets,
+					scale.height.radius,
+					Degrees::only(scale.height.degree),
+					Zone{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
 				m_subsets,
 				scale,
-				noise,
-				Zone{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
+				noise),
 			m_direct(scale.normalRadius == 0.0 || scale.height.radius < directBelow),
 			m_search(m_anchors.origins())
 	{
@@ -130,8 +135,10 @@ private:
 
 	SurfaceElement interpolate(const Eigen::Vector3d& position, const Eigen::Vector3d& gate, double jump) const
 	{
-		thread_local std::vector<Index> near;
-		thread_local LocalSamples<10>   samples;
+		thread_local std::vector<Index> nearScratch;
+		thread_local LocalSamples<10>   samplesScratch;
+		std::vector<Index>&             near    = nearScratch;
+		LocalSamples<10>&               samples = samplesScratch;
 		SurfaceElement                  result;
 		const double                    radius = blendRadius * m_scale.height.radius;
 		m_search.within(position, radius, near);
@@ -241,7 +248,7 @@ AdaptiveSurface adaptiveSurface(
 	std::vector<double> shares(n, 0.0);
 	for (int s = 0; s < int(selection.scales.size()); ++s) {
 		std::vector<std::pair<Index, double>> users;
-		for (Index i = 0; i < n; ++i)
+		for (const Index i : sample.search.spatialOrder())
 			for (const auto& [scale, share] : mixtures[i].weights)
 				if (scale == s)
 					users.emplace_back(i, share);
@@ -294,6 +301,7 @@ AdaptiveSurface adaptiveSurface(
 namespace {
 
 constexpr double weightReach   = 3.0;    // local spacings, as the published operating region
+constexpr Index  medianPoints  = 32768;  // whose residuals give a median
 constexpr double agreementCosine = 0.99985; // of one degree
 constexpr double smallestSigma = 3e-3;
 // The estimate smooths its normals, so the median is small, and the published cut would cut smooth parts.
@@ -326,30 +334,43 @@ void setWeights(
 	const Progress&             progress)
 {
 	const Index                      n = cloud.size();
+	const RobustCurvatureOptions     published;
 	std::vector<std::vector<Index>>  rows(n);
 	std::vector<std::vector<double>> residuals(n);
-	parallelFor(n, progress, [&](Index i) {
+	parallelFor(n, progress, [&](Index k) {
+		thread_local std::vector<Index>                    foundScratch;
+		thread_local std::vector<std::pair<double, Index>> nearScratch;
+		auto&                 found = foundScratch;
+		auto&                 near  = nearScratch;
+		const Index           i   = search.spatialOrder()[k];
 		const SurfaceElement& own = surface.elements[i];
 		if (!own.valid)
 			return;
-		search.within(cloud.positions.col(i), weightReach * minimum.spacing[i], rows[i]);
-		std::sort(rows[i].begin(), rows[i].end());
-		std::vector<Index> kept;
-		for (const Index j : rows[i]) {
-			const SurfaceElement& other = surface.elements[j];
-			if (j == i || !other.valid)
-				continue;
+		search.within(cloud.positions.col(i), weightReach * minimum.spacing[i], found);
+		near.clear();
+		for (const Index j : found)
+			if (j != i && surface.elements[j].valid)
+				near.emplace_back((cloud.positions.col(j) - cloud.positions.col(i)).squaredNorm(), j);
+		if (near.size() > static_cast<std::size_t>(published.maxPoints)) {
+			std::nth_element(near.begin(), near.begin() + published.maxPoints, near.end());
+			near.resize(published.maxPoints);
+		}
+		std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+		rows[i].reserve(near.size());
+		residuals[i].reserve(near.size());
+		for (const auto& [squared, j] : near) {
+			const SurfaceElement& other     = surface.elements[j];
 			const Eigen::Vector3d predicted = own.normal + own.shape * (other.position - own.position);
-			kept.push_back(j);
+			rows[i].push_back(j);
 			residuals[i].push_back((other.normal - predicted).norm());
 		}
-		rows[i] = std::move(kept);
 	});
-	std::vector<double> all;
-	for (const auto& row : residuals)
-		all.insert(all.end(), row.begin(), row.end());
-	const RobustCurvatureOptions published;
-	const double median = all.empty() ? 0.0 : medianInPlace(all);
+	// A median of millions needs not all of them.
+	std::vector<double> some;
+	const Index         stride = 1 + n / medianPoints;
+	for (Index i = 0; i < n; i += stride)
+		some.insert(some.end(), residuals[i].begin(), residuals[i].end());
+	const double median = some.empty() ? 0.0 : medianInPlace(some);
 	const double sigma  = std::max(smallestSigma, looseness * published.sigmaFactor * median);
 	for (Index i = 0; i < n; ++i) {
 		std::size_t kept = 0;

@@ -54,8 +54,19 @@ struct Family {
 // From little bias and much variance to the reverse.
 constexpr std::array<Family, 3> families = {{{4, 0.0}, {4, 1.7}, {2, 2.4}}};
 
+using ShapeVector = Eigen::Matrix<double, 6, 1>;
+
+// The components of a symmetric tensor, so that products of vectors are those of tensors.
+ShapeVector vectorOf(const Eigen::Matrix3d& shape)
+{
+	const double  twice = std::sqrt(2.0);
+	ShapeVector   v;
+	v << shape(0, 0), shape(1, 1), shape(2, 2), twice * shape(0, 1), twice * shape(0, 2), twice * shape(1, 2);
+	return v;
+}
+
 struct ProbeEstimate {
-	Eigen::Matrix3d shape    = Eigen::Matrix3d::Zero();
+	ShapeVector     shape    = ShapeVector::Zero();
 	double          residual = 0.0; // radii
 	double          offset   = 0.0;
 	bool            valid    = false;
@@ -81,7 +92,7 @@ std::vector<ProbeEstimate> estimateProbes(
 		if (element.valid && anchors)
 			element = anchors->normalField(anchors->onFace(element, positions.col(p)));
 		estimates[p] = {
-			element.shape,
+			vectorOf(element.shape),
 			starts[p].residual / scale.height.radius,
 			starts[p].offset,
 			element.valid && (anchors || scale.normalRadius == 0.0)};
@@ -130,8 +141,8 @@ private:
 					0.25 * (trial.halves[0][p].shape - trial.halves[1][p].shape).squaredNorm());
 		if (terms.size() < 8 || terms.size() < 0.875 * m_pool.size())
 			return infinity;
-		std::sort(terms.begin(), terms.end());
 		const auto kept = static_cast<std::size_t>(std::ceil((1.0 - trim) * terms.size()));
+		std::nth_element(terms.begin(), terms.begin() + (kept - 1), terms.end());
 		return std::accumulate(terms.begin(), terms.begin() + kept, 0.0) / kept;
 	}
 
@@ -191,14 +202,13 @@ private:
 			std::vector<double> terms;
 			for (const Index p : m_pool)
 				if (trial.valid(p) && finer.valid(p))
-					terms.push_back(
-						((trial.halves[0][p].shape - finer.halves[0][p].shape)
-							 .cwiseProduct(trial.halves[1][p].shape - finer.halves[1][p].shape))
-							.sum());
+					terms.push_back((trial.halves[0][p].shape - finer.halves[0][p].shape)
+										.dot(trial.halves[1][p].shape - finer.halves[1][p].shape));
 			if (terms.size() < 8)
 				continue;
-			std::sort(terms.begin(), terms.end());
 			const auto cut   = static_cast<std::size_t>(0.5 * trim * terms.size());
+			std::nth_element(terms.begin(), terms.begin() + cut, terms.end());
+			std::nth_element(terms.begin() + cut, terms.end() - cut - 1, terms.end());
 			const auto count = static_cast<double>(terms.size() - 2 * cut);
 			double     total = 0.0, squares = 0.0;
 			for (std::size_t t = cut; t < terms.size() - cut; ++t) {
@@ -326,12 +336,8 @@ public:
 			if (f == 0 || families[f].normalRatio * radius < largestNormalRadius)
 				here.push_back(
 					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level}, {}});
-		for (int h = 0; h < 2; ++h) {
-			const PointSample& half = h == 0 ? m_first : m_second;
-			const PointSubsets subsets(half, radius);
-			for (Trial& trial : here)
-				trial.halves[h] = onHalf(half, subsets, trial.scale);
-		}
+		for (int h = 0; h < 2; ++h)
+			runOnHalf(h, radius, here);
 		m_trials.insert(m_trials.end(), here.begin(), here.end());
 	}
 
@@ -351,32 +357,52 @@ public:
 	}
 
 private:
-	std::vector<ProbeEstimate>
-	onHalf(const PointSample& half, const PointSubsets& subsets, CurvatureScale& scale) const
+	// All trials have the same height radius: they share the search and, by degree, the fits.
+	void runOnHalf(int h, double radius, std::vector<Trial>& trials) const
 	{
-		const Index                 probes = static_cast<Index>(m_positions.cols());
-		std::vector<SurfaceElement> starts(probes);
-		std::vector<double>         residuals(probes);
+		const PointSample& half   = h == 0 ? m_first : m_second;
+		const Index        probes = static_cast<Index>(m_positions.cols());
+		const PointSubsets subsets(half, radius);
+		Degrees            degrees, ofAnchors;
+		for (const Trial& trial : trials)
+			(trial.scale.height.degree == 2 ? degrees.quadric : degrees.quartic) = true;
+		std::vector<HeightFits> fits(probes);
 		parallelFor(probes, {}, [&](Index p) {
-			starts[p] = surfaceAt(
+			fits[p] = surfacesAt(
 				subsets,
 				p,
 				m_positions.col(p),
 				m_sample.cloud.normals.col(p),
-				scale.height,
+				radius,
+				degrees,
 				probeIterations);
-			residuals[p] = starts[p].residual / scale.height.radius;
-			if (isOutlier(starts[p], m_positions.col(p), scale.height.radius))
-				starts[p].valid = false;
 		});
-		scale.usualResidual = quantileOf(residuals, smoothShare) * scale.height.radius;
-		std::unique_ptr<const SurfaceAnchors> anchors;
-		if (scale.normalRadius > 0.0) {
+		for (Trial& trial : trials) {
+			std::vector<double> residuals;
+			for (const HeightFits& fit : fits)
+				residuals.push_back(fit.of(trial.scale.height.degree).residual / radius);
+			trial.scale.usualResidual = quantileOf(residuals, smoothShare) * radius;
 			// What lies within the noise is judged by its residual: no need of anchors for that.
-			if (quantileOf(residuals, 0.1) < largestResidual)
-				anchors = std::make_unique<const SurfaceAnchors>(half, subsets, scale, m_noise);
+			if (trial.scale.normalRadius > 0.0 && quantileOf(residuals, 0.1) < largestResidual)
+				(trial.scale.height.degree == 2 ? ofAnchors.quadric : ofAnchors.quartic) = true;
 		}
-		return estimateProbes(anchors.get(), starts, m_positions, scale);
+		AnchorFits anchorFits;
+		if (ofAnchors.quadric || ofAnchors.quartic)
+			anchorFits = fitAnchors(half, subsets, radius, ofAnchors);
+		for (Trial& trial : trials) {
+			const int                   degree = trial.scale.height.degree;
+			std::vector<SurfaceElement> starts(probes);
+			for (Index p = 0; p < probes; ++p) {
+				starts[p] = fits[p].of(degree);
+				if (isOutlier(starts[p], m_positions.col(p), radius))
+					starts[p].valid = false;
+			}
+			std::unique_ptr<const SurfaceAnchors> anchors;
+			if (trial.scale.normalRadius > 0.0 && (degree == 2 ? ofAnchors.quadric : ofAnchors.quartic))
+				anchors =
+					std::make_unique<const SurfaceAnchors>(anchorFits, subsets, trial.scale, m_noise);
+			trial.halves[h] = estimateProbes(anchors.get(), starts, m_positions, trial.scale);
+		}
 	}
 
 	bool hopelessBelow(int level, const std::vector<Index>& pool) const

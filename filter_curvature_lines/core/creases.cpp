@@ -41,6 +41,7 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 		const std::vector<Index> near   = search.nearest(own.position, shapeNeighbors);
 		const double             radius = 1.05 * (elements[near.back()].position - own.position).norm();
 		thread_local std::vector<Index> same;
+		LocalSurfaceFitter&             fitter = LocalSurfaceFitter::ofThisThread();
 		SurfaceElement                  fit  = own;
 		double                          gate = firstGate;
 		for (int it = 0; it < shapeIterations; ++it, gate = std::max(lastGate, 0.5 * gate)) {
@@ -53,8 +54,8 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 			}
 			SurfaceElement start = own;
 			start.normal         = fit.normal;
-			const SurfaceElement next =
-				LocalSurfaceFitter::ofThisThread().fitNormals(elements, same, start, radius, 1, false);
+			fitter.takeBall(cloud, same, own.position, radius);
+			const SurfaceElement next = fitter.fitNormals(start, 1, false);
 			if (!next.valid)
 				break;
 			fit = next;

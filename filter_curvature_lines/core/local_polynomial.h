@@ -5,8 +5,9 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+
+#include "simd_block.h"
 
 namespace curvature_lines {
 
@@ -21,21 +22,25 @@ constexpr int monomialCount(int degree)
 template<int Values>
 class LocalSamples {
 public:
-	static constexpr int block = 4;
-
 	std::vector<double> x, y, weight;
 	std::vector<double> value[Values];
 
 	// Room for n samples and the padding of the last block.
 	void reserve(std::size_t n)
 	{
-		if (x.size() < n + block) {
+		if (x.size() < n + blockSize) {
 			for (auto* array : {&x, &y, &weight})
-				array->resize(n + block);
+				array->resize(n + blockSize);
 			for (auto& array : value)
-				array.resize(n + block);
+				array.resize(n + blockSize);
 		}
 		m_size = 0;
+	}
+	// n samples that the caller writes into the arrays.
+	void resize(std::size_t n)
+	{
+		reserve(n);
+		m_size = int(n);
 	}
 	int  size() const { return m_size; }
 	void add(double px, double py, double w, const Eigen::Matrix<double, Values, 1>& values)
@@ -51,7 +56,7 @@ public:
 	int pad()
 	{
 		int padded = m_size;
-		for (; padded % block != 0; ++padded) {
+		for (; padded % blockSize != 0; ++padded) {
 			x[padded] = y[padded] = weight[padded] = 0.0;
 			for (auto& array : value)
 				array[padded] = 0.0;
@@ -94,72 +99,9 @@ struct PolynomialFit {
 	}
 };
 
-// Invalid when the samples do not determine the polynomial. The normal equations come from the moments
-// sum w x^a y^b, of which there are far fewer than products of monomials.
+// Invalid when the samples do not determine the polynomial. Compiled for the degrees and numbers of values
+// that are in use, see the end of local_polynomial.cpp.
 template<int Degree, int Values>
-PolynomialFit<Degree, Values> fitPolynomial(LocalSamples<Values>& samples)
-{
-	using Block             = Eigen::Array<double, LocalSamples<Values>::block, 1>;
-	constexpr int   highest = 2 * Degree;
-	constexpr int   count   = monomialCount(Degree);
-	Block           moments[highest + 1][highest + 1];
-	Block           products[Degree + 1][Degree + 1][Values];
-	Block           squares = Block::Zero();
-	const int       padded  = samples.pad();
-	for (auto& row : moments)
-		for (Block& moment : row)
-			moment.setZero();
-	for (auto& row : products)
-		for (auto& cell : row)
-			for (Block& product : cell)
-				product.setZero();
-	for (int s = 0; s < padded; s += LocalSamples<Values>::block) {
-		const Block x = Eigen::Map<const Block>(&samples.x[s]);
-		const Block y = Eigen::Map<const Block>(&samples.y[s]);
-		Block       v[Values];
-		Block       power = Eigen::Map<const Block>(&samples.weight[s]); // w x^a
-		for (int c = 0; c < Values; ++c) {
-			v[c] = Eigen::Map<const Block>(&samples.value[c][s]);
-			squares += power * v[c] * v[c];
-		}
-		for (int a = 0; a <= highest; ++a) {
-			Block both = power; // w x^a y^b
-			for (int b = 0; a + b <= highest; ++b) {
-				moments[a][b] += both;
-				if (a + b <= Degree)
-					for (int c = 0; c < Values; ++c)
-						products[a][b][c] += both * v[c];
-				both *= y;
-			}
-			power *= x;
-		}
-	}
-
-	PolynomialFit<Degree, Values>        fit;
-	Eigen::Matrix<double, count, Values> rhs;
-	int                                  exponent[count][2];
-	for (int degree = 0, m = 0; degree <= Degree; ++degree)
-		for (int b = 0; b <= degree; ++b, ++m) {
-			exponent[m][0] = degree - b;
-			exponent[m][1] = b;
-		}
-	for (int r = 0; r < count; ++r) {
-		for (int c = 0; c < Values; ++c)
-			rhs(r, c) = products[exponent[r][0]][exponent[r][1]][c].sum();
-		for (int c = 0; c <= r; ++c)
-			fit.gram(r, c) = fit.gram(c, r) =
-				moments[exponent[r][0] + exponent[c][0]][exponent[r][1] + exponent[c][1]].sum();
-	}
-	fit.sumOfWeights = fit.gram(0, 0);
-	if (samples.size() < count || !(fit.sumOfWeights > 0.0))
-		return fit;
-	Eigen::Matrix<double, count, count> regular = fit.gram;
-	regular.diagonal() *= 1.0 + 1e-10; // a sheet seen edge-on still has a solution
-	const Eigen::LDLT<Eigen::Matrix<double, count, count>> ldlt(regular);
-	fit.coefficients    = ldlt.solve(rhs);
-	fit.squaredResidual = std::max(0.0, squares.sum() - fit.coefficients.cwiseProduct(rhs).sum());
-	fit.valid           = ldlt.isPositive() && fit.coefficients.allFinite();
-	return fit;
-}
+PolynomialFit<Degree, Values> fitPolynomial(LocalSamples<Values>& samples);
 
 } // namespace curvature_lines

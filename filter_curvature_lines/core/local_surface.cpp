@@ -35,6 +35,149 @@ Eigen::Matrix3d shapeOfHeight(
 	return dual.transpose() * (-hessian / w) * dual;
 }
 
+// The same kernel for a block of samples.
+inline void kernelOf(const Block& t2, Block& weight)
+{
+	const Block s    = 1.0 - t2;
+	const Block zero = {};
+	weight           = s > 0.0 ? s * s : zero;
+}
+
+// sum w (1, d, n, d d^T) over the points whose normals do not oppose `side`; d d^T by its lower triangle.
+struct PlaneMoments {
+	double weight = 0.0;
+	double offset[3], normal[3], square[6];
+};
+
+CURVATURE_LINES_AVX2_CLONE void sumUp(const BallPoints& ball, const double* side, PlaneMoments& moments)
+{
+	const Block zero   = {};
+	Block       weight = {}, offset[3] = {}, normal[3] = {}, square[6] = {};
+	for (int s = 0; s < ball.size; s += blockSize) {
+		const Block d[3] = {
+			blockAt(&ball.position[0][s]), blockAt(&ball.position[1][s]), blockAt(&ball.position[2][s])};
+		const Block n[3] = {
+			blockAt(&ball.normal[0][s]), blockAt(&ball.normal[1][s]), blockAt(&ball.normal[2][s])};
+		const Block along = n[0] * side[0] + n[1] * side[1] + n[2] * side[2];
+		Block       w;
+		kernelOf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], w);
+		w = along < 0.0 ? zero : w;
+		weight += w;
+		for (int r = 0, m = 0; r < 3; ++r) {
+			const Block wd = w * d[r];
+			offset[r] += wd;
+			normal[r] += w * n[r];
+			for (int c = 0; c <= r; ++c, ++m)
+				square[m] += wd * d[c];
+		}
+	}
+	moments.weight = sumOf(weight);
+	for (int r = 0; r < 3; ++r) {
+		moments.offset[r] = sumOf(offset[r]);
+		moments.normal[r] = sumOf(normal[r]);
+	}
+	for (int m = 0; m < 6; ++m)
+		moments.square[m] = sumOf(square[m]);
+}
+
+// The points of a ball in a tangent frame at `origin` (in radii from the centre).
+struct LocalFrame {
+	double origin[3], u[3], v[3], n[3];
+
+	LocalFrame(const TangentFrame& frame, const Eigen::Vector3d& center)
+	{
+		for (int c = 0; c < 3; ++c) {
+			origin[c] = center[c];
+			u[c]      = frame.u[c];
+			v[c]      = frame.v[c];
+			n[c]      = frame.n[c];
+		}
+	}
+};
+
+// Samples of the heights over the plane of `frame`; of weight 0 where the normal opposes. Returns how many
+// have a weight.
+CURVATURE_LINES_AVX2_CLONE int toHeights(
+	const BallPoints& ball, const LocalFrame& frame, const double* robust, LocalSamples<1>& samples)
+{
+	const Block zero = {}, one = zero + 1.0;
+	Block       used = {};
+	for (int s = 0; s < ball.size; s += blockSize) {
+		const Block x     = blockAt(&ball.position[0][s]) - frame.origin[0];
+		const Block y     = blockAt(&ball.position[1][s]) - frame.origin[1];
+		const Block z     = blockAt(&ball.position[2][s]) - frame.origin[2];
+		const Block along = blockAt(&ball.normal[0][s]) * frame.n[0] +
+			blockAt(&ball.normal[1][s]) * frame.n[1] + blockAt(&ball.normal[2][s]) * frame.n[2];
+		Block w;
+		kernelOf(x * x + y * y + z * z, w);
+		w = along < 0.0 ? zero : w * blockAt(&robust[s]);
+		used += w > 0.0 ? one : zero;
+		blockAt(&samples.weight[s])   = w;
+		blockAt(&samples.x[s])        = x * frame.u[0] + y * frame.u[1] + z * frame.u[2];
+		blockAt(&samples.y[s])        = x * frame.v[0] + y * frame.v[1] + z * frame.v[2];
+		blockAt(&samples.value[0][s]) = x * frame.n[0] + y * frame.n[1] + z * frame.n[2];
+	}
+	return int(sumOf(used));
+}
+
+// Samples of the normals in `frame`, likewise.
+CURVATURE_LINES_AVX2_CLONE int
+toNormals(const BallPoints& ball, const LocalFrame& frame, LocalSamples<3>& samples)
+{
+	const Block zero = {}, one = zero + 1.0;
+	Block       used = {};
+	for (int s = 0; s < ball.size; s += blockSize) {
+		const Block x     = blockAt(&ball.position[0][s]);
+		const Block y     = blockAt(&ball.position[1][s]);
+		const Block z     = blockAt(&ball.position[2][s]);
+		const Block nx    = blockAt(&ball.normal[0][s]);
+		const Block ny    = blockAt(&ball.normal[1][s]);
+		const Block nz    = blockAt(&ball.normal[2][s]);
+		const Block along = nx * frame.n[0] + ny * frame.n[1] + nz * frame.n[2];
+		Block       w;
+		kernelOf(x * x + y * y + z * z, w);
+		w = along < 0.0 ? zero : w;
+		used += w > 0.0 ? one : zero;
+		blockAt(&samples.weight[s])   = w;
+		blockAt(&samples.x[s])        = x * frame.u[0] + y * frame.u[1] + z * frame.u[2];
+		blockAt(&samples.y[s])        = x * frame.v[0] + y * frame.v[1] + z * frame.v[2];
+		blockAt(&samples.value[0][s]) = nx * frame.u[0] + ny * frame.u[1] + nz * frame.u[2];
+		blockAt(&samples.value[1][s]) = nx * frame.v[0] + ny * frame.v[1] + nz * frame.v[2];
+		blockAt(&samples.value[2][s]) = along;
+	}
+	return int(sumOf(used));
+}
+
+// Distances of the samples from the polynomial, 0 without weight; returns the largest.
+template<int Degree>
+CURVATURE_LINES_AVX2_CLONE double
+distances(const LocalSamples<1>& samples, const double* coefficients, double* result)
+{
+	const Block zero    = {};
+	Block       largest = {};
+	for (int s = 0; s < samples.size(); s += blockSize) {
+		const Block x    = blockAt(&samples.x[s]);
+		const Block y    = blockAt(&samples.y[s]);
+		Block       left = blockAt(&samples.value[0][s]);
+		Block       power = zero + 1.0; // x^a
+#pragma GCC unroll 8
+		for (int a = 0; a <= Degree; ++a) {
+			Block both = power;
+#pragma GCC unroll 8
+			for (int b = 0; b <= Degree - a; ++b) {
+				left -= coefficients[(a + b) * (a + b + 1) / 2 + b] * both;
+				both *= y;
+			}
+			power *= x;
+		}
+		const Block size     = left < 0.0 ? -left : left;
+		const Block counted  = blockAt(&samples.weight[s]) > 0.0 ? size : zero;
+		largest              = counted > largest ? counted : largest;
+		blockAt(&result[s]) = counted;
+	}
+	return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
+}
+
 } // namespace
 
 LocalSurfaceFitter& LocalSurfaceFitter::ofThisThread()
@@ -43,94 +186,93 @@ LocalSurfaceFitter& LocalSurfaceFitter::ofThisThread()
 	return fitter;
 }
 
-bool LocalSurfaceFitter::planeStart(
-	const PointCloud&         cloud,
+void LocalSurfaceFitter::takeBall(
+	const PointCloud&         points,
 	const std::vector<Index>& near,
-	double                    radius,
-	SurfaceElement&           element) const
+	const Eigen::Vector3d&    center,
+	double                    radius)
 {
-	double          total      = 0.0;
-	Eigen::Vector3d mean       = Eigen::Vector3d::Zero();
-	Eigen::Vector3d side       = Eigen::Vector3d::Zero();
-	Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-	for (const Index i : near) {
-		const auto n = cloud.normals.col(i);
-		if (n.dot(element.normal) < 0.0)
-			continue;
-		const Eigen::Vector3d d = cloud.positions.col(i) - element.position;
-		const double          w = ballKernel(d.squaredNorm() / (radius * radius));
-		total += w;
-		mean += w * d;
-		side += w * n;
-		covariance.noalias() += w * d * d.transpose();
+	const std::size_t room = near.size() + blockSize;
+	if (m_robust.size() < room) {
+		for (int c = 0; c < 3; ++c) {
+			m_ball.position[c].resize(room);
+			m_ball.normal[c].resize(room);
+		}
+		m_robust.resize(room);
+		m_residuals.resize(room);
 	}
-	if (!(total > 0.0))
-		return false;
-	mean /= total;
-	covariance = covariance / total - mean * mean.transpose();
-	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-	eigen.computeDirect(covariance);
-	Eigen::Vector3d normal = eigen.eigenvectors().col(0);
-	if (!normal.allFinite())
-		return false;
-	element.normal = normal.dot(side) < 0.0 ? Eigen::Vector3d(-normal) : normal;
-	return true;
+	m_ball.center      = center;
+	m_ball.radius      = radius;
+	m_ball.size        = int(near.size());
+	const double scale = 1.0 / radius;
+	for (int k = 0; k < m_ball.size; ++k)
+		for (int c = 0; c < 3; ++c) {
+			m_ball.position[c][k] = (points.positions(c, near[k]) - center[c]) * scale;
+			m_ball.normal[c][k]   = points.normals(c, near[k]);
+		}
+	for (int k = m_ball.size; k < m_ball.size + blockSize; ++k)
+		for (int c = 0; c < 3; ++c) {
+			m_ball.position[c][k] = 2.0;
+			m_ball.normal[c][k]   = 0.0;
+		}
 }
 
-bool LocalSurfaceFitter::robustFactors(double rms)
+Eigen::Vector3d LocalSurfaceFitter::planeNormal(const Eigen::Vector3d& normal) const
 {
-	if (!(*std::max_element(m_residuals.begin(), m_residuals.end()) > suspicious * rms))
-		return false;
-	m_sorted    = m_residuals;
-	auto middle = m_sorted.begin() + m_sorted.size() / 2;
+	PlaneMoments moments;
+	sumUp(m_ball, normal.data(), moments);
+	if (!(moments.weight > 0.0))
+		return Eigen::Vector3d::Zero();
+	const Eigen::Vector3d mean = Eigen::Vector3d::Map(moments.offset) / moments.weight;
+	Eigen::Matrix3d       covariance;
+	for (int r = 0, m = 0; r < 3; ++r)
+		for (int c = 0; c <= r; ++c, ++m)
+			covariance(r, c) = covariance(c, r) = moments.square[m] / moments.weight - mean[r] * mean[c];
+	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+	eigen.computeDirect(covariance);
+	const Eigen::Vector3d plane = eigen.eigenvectors().col(0);
+	if (!plane.allFinite())
+		return Eigen::Vector3d::Zero();
+	return plane.dot(Eigen::Vector3d::Map(moments.normal)) < 0.0 ? Eigen::Vector3d(-plane) : plane;
+}
+
+template<int Values>
+void LocalSurfaceFitter::reweight(LocalSamples<Values>& samples)
+{
+	m_sorted.clear();
+	for (int s = 0; s < samples.size(); ++s)
+		if (samples.weight[s] > 0.0)
+			m_sorted.push_back(m_residuals[s]);
+	const auto middle = m_sorted.begin() + m_sorted.size() / 2;
 	std::nth_element(m_sorted.begin(), middle, m_sorted.end());
 	const double sigma = madFactor * *middle;
-	m_factors.clear();
-	for (const double residual : m_residuals) {
-		const double t = residual / (robustScale * sigma + 1e-12);
-		m_factors.push_back(residual > cut * sigma + 1e-12 ? 0.0 : 1.0 / ((1.0 + t * t) * (1.0 + t * t)));
+	for (int s = 0; s < samples.size(); ++s) {
+		if (!(samples.weight[s] > 0.0))
+			continue;
+		const double t = m_residuals[s] / (robustScale * sigma + 1e-12);
+		const double g = m_residuals[s] > cut * sigma + 1e-12 ? 0.0 : 1.0 / ((1.0 + t * t) * (1.0 + t * t));
+		samples.weight[s] *= g / m_robust[s];
+		m_robust[s] = g;
 	}
-	return true;
 }
 
 template<int Degree>
-bool LocalSurfaceFitter::heightStep(
-	const PointCloud&         cloud,
-	const std::vector<Index>& near,
-	double                    radius,
-	bool                      lookForOutliers,
-	SurfaceElement&           element)
+bool LocalSurfaceFitter::heightStep(bool lookForOutliers, SurfaceElement& element)
 {
+	const double       radius = m_ball.radius;
 	const TangentFrame frame(element.normal);
-	const double       scale = 1.0 / radius;
-	m_heights.reserve(near.size());
-	m_entries.clear();
-	for (Index k = 0; k < static_cast<Index>(near.size()); ++k) {
-		const Index i = near[k];
-		if (cloud.normals.col(i).dot(frame.n) < 0.0)
-			continue;
-		const Eigen::Vector3d d = (cloud.positions.col(i) - element.position) * scale;
-		const double          w = ballKernel(d.squaredNorm()) * m_robust[k];
-		if (w <= 0.0)
-			continue;
-		m_heights.add(d.dot(frame.u), d.dot(frame.v), w, Eigen::Matrix<double, 1, 1>(d.dot(frame.n)));
-		m_entries.push_back(k);
-	}
-	if (m_heights.size() < monomialCount(Degree) + spareSamples)
+	const LocalFrame   local(frame, (element.position - m_ball.center) / radius);
+	m_heights.resize(m_ball.size);
+	const int used = toHeights(m_ball, local, m_robust.data(), m_heights);
+	if (used < monomialCount(Degree) + spareSamples)
 		return false;
 	auto fit = fitPolynomial<Degree, 1>(m_heights);
 	if (!fit.valid)
 		return false;
-
 	if (lookForOutliers) {
-		m_residuals.clear();
-		for (int s = 0; s < m_heights.size(); ++s)
-			m_residuals.push_back(std::abs(m_heights.value[0][s] - fit(m_heights.x[s], m_heights.y[s])[0]));
-		if (robustFactors(std::sqrt(fit.squaredResidual / fit.sumOfWeights))) {
-			for (int s = 0; s < m_heights.size(); ++s) {
-				m_heights.weight[s] *= m_factors[s] / m_robust[m_entries[s]];
-				m_robust[m_entries[s]] = m_factors[s];
-			}
+		const double largest = distances<Degree>(m_heights, fit.coefficients.data(), m_residuals.data());
+		if (largest > suspicious * std::sqrt(fit.squaredResidual / fit.sumOfWeights)) {
+			reweight(m_heights);
 			fit = fitPolynomial<Degree, 1>(m_heights);
 			if (!fit.valid)
 				return false;
@@ -143,36 +285,28 @@ bool LocalSurfaceFitter::heightStep(
 	const Eigen::Vector2d gradient(c[1], c[2]);
 	Eigen::Matrix2d       hessian;
 	hessian << 2.0 * c[3], c[4], c[4], 2.0 * c[5];
-	const double freedom = double(m_heights.size() - monomialCount(Degree)) / m_heights.size();
-	element.samples      = m_heights.size();
-	element.support      = fit.sumOfWeights / m_heights.size();
+	const double freedom = double(used - monomialCount(Degree)) / used;
+	element.samples      = used;
+	element.support      = fit.sumOfWeights / used;
 	element.residual     = radius * std::sqrt(fit.squaredResidual / (freedom * fit.sumOfWeights));
 	element.offset   = std::hypot(fit.gram(0, 1), fit.gram(0, 2)) / fit.sumOfWeights;
 	element.position += c[0] * radius * frame.n;
 	element.normal = (frame.n - c[1] * frame.u - c[2] * frame.v).normalized();
-	element.shape  = shapeOfHeight(frame, gradient, hessian) * scale;
+	element.shape  = shapeOfHeight(frame, gradient, hessian) / radius;
 	return true;
 }
 
-SurfaceElement LocalSurfaceFitter::fitHeights(
-	const PointCloud&         cloud,
-	const std::vector<Index>& near,
-	const Eigen::Vector3d&    position,
-	const Eigen::Vector3d&    normal,
-	double                    radius,
-	int                       degree,
-	int                       iterations)
+SurfaceElement LocalSurfaceFitter::fitHeights(const Eigen::Vector3d& normal, int degree, int iterations)
 {
 	SurfaceElement element;
-	element.position = position;
+	element.position = m_ball.center;
 	element.normal   = normal;
-	if (!planeStart(cloud, near, radius, element))
+	if (!(normal.squaredNorm() > 0.0))
 		return element;
-	m_robust.assign(near.size(), 1.0);
+	std::fill_n(m_robust.begin(), m_ball.size, 1.0);
 	for (int it = 0; it < iterations; ++it) {
-		const bool fitted = degree == 2 ? heightStep<2>(cloud, near, radius, it > 0 || iterations == 1, element) :
-										  heightStep<4>(cloud, near, radius, it > 0 || iterations == 1, element);
-		if (!fitted)
+		const bool lookForOutliers = it > 0 || iterations == 1;
+		if (!(degree == 2 ? heightStep<2>(lookForOutliers, element) : heightStep<4>(lookForOutliers, element)))
 			return element;
 	}
 	element.valid = true;
@@ -180,46 +314,30 @@ SurfaceElement LocalSurfaceFitter::fitHeights(
 }
 
 template<int Degree>
-bool LocalSurfaceFitter::normalStep(
-	const std::vector<SurfaceElement>& elements,
-	const std::vector<Index>&          near,
-	const Eigen::Vector3d&             center,
-	double                             radius,
-	bool                               lookForOutliers,
-	SurfaceElement&                    element)
+bool LocalSurfaceFitter::normalStep(bool lookForOutliers, SurfaceElement& element)
 {
 	const TangentFrame frame(element.normal);
-	const double       scale = 1.0 / radius;
-	m_normals.reserve(near.size());
-	for (const Index k : near) {
-		const SurfaceElement& other = elements[k];
-		const double          along = other.normal.dot(frame.n);
-		const Eigen::Vector3d d     = (other.position - center) * scale;
-		const double          w     = ballKernel(d.squaredNorm());
-		if (!other.valid || along < 0.0 || w <= 0.0)
-			continue;
-		m_normals.add(
-			d.dot(frame.u),
-			d.dot(frame.v),
-			w,
-			{other.normal.dot(frame.u), other.normal.dot(frame.v), along});
-	}
-	if (m_normals.size() < monomialCount(Degree) + spareSamples)
+	const double       scale = 1.0 / m_ball.radius;
+	m_normals.resize(m_ball.size);
+	const LocalFrame local(frame, Eigen::Vector3d::Zero());
+	if (toNormals(m_ball, local, m_normals) < monomialCount(Degree) + spareSamples)
 		return false;
 	auto fit = fitPolynomial<Degree, 3>(m_normals);
 	if (!fit.valid)
 		return false;
 	if (lookForOutliers) {
-		m_residuals.clear();
+		double largest = 0.0;
 		for (int s = 0; s < m_normals.size(); ++s) {
 			Eigen::Vector3d residual = fit(m_normals.x[s], m_normals.y[s]);
 			for (int c = 0; c < 3; ++c)
 				residual[c] -= m_normals.value[c][s];
-			m_residuals.push_back(residual.norm());
+			m_residuals[s] = residual.norm();
+			if (m_normals.weight[s] > 0.0)
+				largest = std::max(largest, m_residuals[s]);
 		}
-		if (robustFactors(std::sqrt(fit.squaredResidual / fit.sumOfWeights))) {
-			for (int s = 0; s < m_normals.size(); ++s)
-				m_normals.weight[s] *= m_factors[s];
+		if (largest > suspicious * std::sqrt(fit.squaredResidual / fit.sumOfWeights)) {
+			std::fill_n(m_robust.begin(), m_normals.size(), 1.0);
+			reweight(m_normals);
 			fit = fitPolynomial<Degree, 3>(m_normals);
 			if (!fit.valid)
 				return false;
@@ -239,22 +357,15 @@ bool LocalSurfaceFitter::normalStep(
 	return true;
 }
 
-SurfaceElement LocalSurfaceFitter::fitNormals(
-	const std::vector<SurfaceElement>& elements,
-	const std::vector<Index>&          near,
-	const SurfaceElement&              start,
-	double                             radius,
-	int                                degree,
-	bool                               robust)
+SurfaceElement LocalSurfaceFitter::fitNormals(const SurfaceElement& start, int degree, bool robust)
 {
 	SurfaceElement element = start;
 	element.valid          = true;
 	for (int it = 0; it < 2 && element.valid; ++it) {
 		const bool look = robust && it > 0;
-		element.valid =
-			degree == 1 ? normalStep<1>(elements, near, start.position, radius, look, element) :
-			degree == 2 ? normalStep<2>(elements, near, start.position, radius, look, element) :
-						  normalStep<3>(elements, near, start.position, radius, look, element);
+		element.valid   = degree == 1 ? normalStep<1>(look, element) :
+						  degree == 2 ? normalStep<2>(look, element) :
+										normalStep<3>(look, element);
 	}
 	return element;
 }

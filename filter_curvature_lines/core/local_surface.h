@@ -28,64 +28,53 @@ inline double ballKernel(double t2)
 	return s > 0.0 ? s * s : 0.0;
 }
 
+// Points of a ball, relative to its centre in radii, with their normals. The arrays end with points outside.
+struct BallPoints {
+	Eigen::Vector3d     center = Eigen::Vector3d::Zero();
+	double              radius = 1.0;
+	int                 size   = 0;
+	std::vector<double> position[3], normal[3];
+};
+
 // Fits at one place. Holds the scratch of one thread.
 class LocalSurfaceFitter {
 public:
-	// Heights over the tangent plane at `start`, of the points `near` it (all within `radius` of its
-	// position, gate normals not opposing), as a polynomial of `degree` 2 or 4. The element moves onto
-	// the fitted surface and is fitted again in the new frame, `iterations` times in all. The start normal
-	// needs only the right sign.
-	SurfaceElement fitHeights(
-		const PointCloud&         cloud,
+	// The oriented points the next fits are to: of `points` those `near` `center`, all within `radius`.
+	void takeBall(
+		const PointCloud&         points,
 		const std::vector<Index>& near,
-		const Eigen::Vector3d&    position,
-		const Eigen::Vector3d&    normal,
-		double                    radius,
-		int                       degree,
-		int                       iterations);
+		const Eigen::Vector3d&    center,
+		double                    radius);
 
-	// The normals of the elements `near` `start` (all within `radius`) as a polynomial of `degree` 1 to 3
-	// in its tangent plane; its linear part is the shape operator. Elements far off it count less if `robust`.
+	// Normal of the plane through the ball, towards the side of `normal`; zero if there is none.
+	Eigen::Vector3d planeNormal(const Eigen::Vector3d& normal) const;
+
+	// Heights over the tangent plane at `normal`, of the points whose normals do not oppose it, as a
+	// polynomial of `degree` 2 or 4. The element moves onto the fitted surface and is fitted again in the
+	// new frame, `iterations` times in all.
+	SurfaceElement fitHeights(const Eigen::Vector3d& normal, int degree, int iterations);
+
+	// The normals of the points as a polynomial of `degree` 1 to 3 in the tangent plane of `start`, which
+	// lies at the centre; its linear part is the shape operator. Normals far off it count less if `robust`.
 	// residual and offset are those of `start`.
-	SurfaceElement fitNormals(
-		const std::vector<SurfaceElement>& elements,
-		const std::vector<Index>&          near,
-		const SurfaceElement&              start,
-		double                             radius,
-		int                                degree,
-		bool                               robust);
+	SurfaceElement fitNormals(const SurfaceElement& start, int degree, bool robust);
 
 	static LocalSurfaceFitter& ofThisThread();
 
 private:
 	template<int Degree>
-	bool normalStep(
-		const std::vector<SurfaceElement>& elements,
-		const std::vector<Index>&          near,
-		const Eigen::Vector3d&             center,
-		double                             radius,
-		bool                               lookForOutliers,
-		SurfaceElement&                    element);
+	bool heightStep(bool lookForOutliers, SurfaceElement& element);
 	template<int Degree>
-	bool heightStep(
-		const PointCloud&         cloud,
-		const std::vector<Index>& near,
-		double                    radius,
-		bool                      lookForOutliers,
-		SurfaceElement&           element);
-	// Geman-McClure weights of m_residuals into m_factors, if there are suspicious ones.
-	bool robustFactors(double rms);
-	bool planeStart(
-		const PointCloud&         cloud,
-		const std::vector<Index>& near,
-		double                    radius,
-		SurfaceElement&           element) const;
+	bool normalStep(bool lookForOutliers, SurfaceElement& element);
+	// Geman-McClure weights by `m_residuals` in place of those of the step before, `m_robust`.
+	template<int Values>
+	void reweight(LocalSamples<Values>& samples);
 
+	BallPoints          m_ball;
 	LocalSamples<1>     m_heights;
 	LocalSamples<3>     m_normals;
-	std::vector<double> m_robust;  // per entry of `near`, from the step before
-	std::vector<Index>  m_entries; // of `near`, per sample
-	std::vector<double> m_residuals, m_sorted, m_factors;
+	std::vector<double> m_robust; // per point of the ball, from the step before
+	std::vector<double> m_residuals, m_sorted;
 };
 
 } // namespace curvature_lines

@@ -311,6 +311,11 @@ bool NeighborSearch::anyWithin(const Eigen::Vector3d& query, double radius) cons
 	return first.size() > 0;
 }
 
+const std::vector<Index>& NeighborSearch::spatialOrder() const
+{
+	return m_tree->index.vAcc; // leaf by leaf
+}
+
 MinimumNeighborhoods minimumNeighborhoods(
 	const PointCloud&                 cloud,
 	const NeighborSearch&             search,

@@ -24,6 +24,9 @@ public:
 	// The same without sorting, into storage the caller keeps: for large balls. The order is fixed.
 	void within(const Eigen::Vector3d& query, double radius, std::vector<Index>& found) const;
 	bool anyWithin(const Eigen::Vector3d& query, double radius) const;
+	// All indices, those of points near each other mostly in turn: loops that take them so find in the cache
+	// what the step before has read.
+	const std::vector<Index>& spatialOrder() const;
 
 private:
 	struct Tree;

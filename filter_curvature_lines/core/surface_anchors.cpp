@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -63,12 +64,15 @@ PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(s
 	}
 	const auto subsets =
 		std::clamp(static_cast<Index>(medianInPlace(counts) / samplesPerBall), Index(1), maxSubsets);
-	if (subsets > 1)
-		for (Index s = 0; s < subsets; ++s)
-			m_subsets.push_back(std::make_unique<const PointSample>(blockOf(
-				sample.cloud,
-				static_cast<Index>(std::int64_t(n) * s / subsets),
-				static_cast<Index>(std::int64_t(n) * (s + 1) / subsets))));
+	if (subsets == 1)
+		return;
+	// Each keeps the spatial order.
+	std::vector<std::vector<Index>> members(subsets);
+	for (const Index i : sample.search.spatialOrder())
+		members[(std::int64_t(i + 1) * subsets - 1) / n].push_back(i);
+	for (const std::vector<Index>& subset : members)
+		m_subsets.push_back(std::make_unique<const PointSample>(
+			PointCloud{sample.cloud.positions(Eigen::all, subset), sample.cloud.normals(Eigen::all, subset)}));
 }
 
 std::vector<Index> thin(const PointSample& sample, double distance)
@@ -95,6 +99,41 @@ bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, d
 		(element.position - position).norm() > outlierRatio * element.residual + outlierFloor * radius;
 }
 
+HeightFits surfacesAt(
+	const PointSubsets&    subsets,
+	Index                  place,
+	const Eigen::Vector3d& position,
+	const Eigen::Vector3d& gateNormal,
+	double                 radius,
+	Degrees                degrees,
+	int                    iterations)
+{
+	const PointSample&  sample = subsets[place];
+	std::vector<Index>& near   = scratchList();
+	LocalSurfaceFitter& fitter = LocalSurfaceFitter::ofThisThread();
+	sample.search.within(position, radius, near);
+	fitter.takeBall(sample.cloud, near, position, radius);
+	const Eigen::Vector3d normal = fitter.planeNormal(gateNormal);
+	HeightFits            fits;
+	if (degrees.quartic)
+		fits.quartic = fitter.fitHeights(normal, 4, iterations);
+	const bool lacksQuartic = degrees.quartic && !fits.quartic.valid;
+	if (!degrees.quadric && !lacksQuartic)
+		return fits;
+	SurfaceElement quadric = fitter.fitHeights(normal, 2, iterations);
+	if (!quadric.valid) {
+		const double wider = 1.5 * radius;
+		sample.search.within(position, wider, near);
+		fitter.takeBall(sample.cloud, near, position, wider);
+		quadric = fitter.fitHeights(fitter.planeNormal(gateNormal), 2, iterations);
+	}
+	if (lacksQuartic)
+		fits.quartic = quadric;
+	if (degrees.quadric)
+		fits.quadric = quadric;
+	return fits;
+}
+
 SurfaceElement surfaceAt(
 	const PointSubsets&    subsets,
 	Index                  place,
@@ -103,21 +142,9 @@ SurfaceElement surfaceAt(
 	const HeightScale&     scale,
 	int                    iterations)
 {
-	const PointSample&  sample = subsets[place];
-	std::vector<Index>& near   = scratchList();
-	LocalSurfaceFitter& fitter = LocalSurfaceFitter::ofThisThread();
-	sample.search.within(position, scale.radius, near);
-	SurfaceElement element = fitter.fitHeights(
-		sample.cloud, near, position, gateNormal, scale.radius, scale.degree, iterations);
-	if (!element.valid && scale.degree > 2)
-		element =
-			fitter.fitHeights(sample.cloud, near, position, gateNormal, scale.radius, 2, iterations);
-	if (!element.valid) {
-		const double wider = 1.5 * scale.radius;
-		sample.search.within(position, wider, near);
-		element = fitter.fitHeights(sample.cloud, near, position, gateNormal, wider, 2, iterations);
-	}
-	return element;
+	return surfacesAt(
+			   subsets, place, position, gateNormal, scale.radius, Degrees::only(scale.degree), iterations)
+		.of(scale.degree);
 }
 
 bool Zone::contains(const Eigen::Vector3d& position) const
@@ -125,14 +152,64 @@ bool Zone::contains(const Eigen::Vector3d& position) const
 	return !points || points->anyWithin(position, reach);
 }
 
-SurfaceAnchors::SurfaceAnchors(
-	const PointSample&    sample,
-	const PointSubsets&   subsets,
-	const CurvatureScale& scale,
-	double                noise,
-	const Zone&           zone) : m_scale(scale), m_noise(noise)
+AnchorFits fitAnchors(
+	const PointSample&  sample,
+	const PointSubsets& subsets,
+	double              radius,
+	Degrees             degrees,
+	const Zone&         zone)
 {
-	fitAll(sample, subsets, zone);
+	const std::vector<Index> kept = thin(sample, anchorSpacing * radius);
+	std::vector<Index>       placeOf(sample.cloud.size(), -1);
+	for (std::size_t place = 0; place < kept.size(); ++place)
+		placeOf[kept[place]] = static_cast<Index>(place);
+	std::vector<Index> visited;
+	visited.reserve(kept.size());
+	for (const Index i : sample.search.spatialOrder())
+		if (placeOf[i] >= 0 && zone.contains(sample.cloud.positions.col(i)))
+			visited.push_back(i);
+	AnchorFits result;
+	result.points.resize(3, visited.size());
+	result.places.resize(visited.size());
+	result.fits.resize(visited.size());
+	std::vector<char> outlier(visited.size(), 0);
+	parallelFor(static_cast<Index>(visited.size()), {}, [&](Index a) {
+		const Index           i        = visited[a];
+		const Eigen::Vector3d position = sample.cloud.positions.col(i);
+		HeightFits            fits     = surfacesAt(
+            subsets, placeOf[i], position, sample.cloud.normals.col(i), radius, degrees, anchorIterations);
+		for (SurfaceElement* element : {&fits.quadric, &fits.quartic})
+			if (element->valid && isOutlier(*element, position, radius)) {
+				element->valid = false;
+				outlier[a]     = 1;
+			}
+		result.points.col(a) = position;
+		result.places[a]     = placeOf[i];
+		result.fits[a]       = fits;
+	});
+	result.hasOutliers = std::count(outlier.begin(), outlier.end(), 1) > 0;
+	return result;
+}
+
+SurfaceAnchors::SurfaceAnchors(
+	const AnchorFits& fits, const PointSubsets& subsets, const CurvatureScale& scale, double noise) :
+		m_scale(scale), m_hasOutliers(fits.hasOutliers), m_noise(noise)
+{
+	std::vector<Index> valid;
+	for (std::size_t a = 0; a < fits.fits.size(); ++a)
+		if (fits.fits[a].of(scale.height.degree).valid)
+			valid.push_back(static_cast<Index>(a));
+	m_elements.reserve(valid.size());
+	for (auto* vectors : {&m_origins, &m_surface.positions, &m_surface.normals})
+		vectors->resize(3, valid.size());
+	for (std::size_t k = 0; k < valid.size(); ++k) {
+		const SurfaceElement& element = fits.fits[valid[k]].of(scale.height.degree);
+		m_elements.push_back(element);
+		m_places.push_back(fits.places[valid[k]]);
+		m_origins.col(k)           = fits.points.col(valid[k]);
+		m_surface.positions.col(k) = element.position;
+		m_surface.normals.col(k)   = element.normal;
+	}
 	m_originSearch = std::make_unique<NeighborSearch>(m_origins);
 	flagMisfits();
 	if (m_hasEdges) {
@@ -141,48 +218,19 @@ SurfaceAnchors::SurfaceAnchors(
 	}
 	if (m_hasEdges)
 		cutLinks();
-	m_search = std::make_unique<NeighborSearch>(m_positions);
-}
-
-void SurfaceAnchors::fitAll(
-	const PointSample& sample, const PointSubsets& subsets, const Zone& zone)
-{
-	const std::vector<Index>    kept = thin(sample, anchorSpacing * m_scale.height.radius);
-	std::vector<SurfaceElement> elements(kept.size());
-	std::vector<char>           outlier(kept.size());
-	parallelFor(static_cast<Index>(kept.size()), {}, [&](Index a) {
-		const Eigen::Vector3d position = sample.cloud.positions.col(kept[a]);
-		if (zone.contains(position))
-			elements[a] = surfaceAt(
-				subsets,
-				a,
-				position,
-				sample.cloud.normals.col(kept[a]),
-				m_scale.height,
-				anchorIterations);
-		outlier[a] = elements[a].valid && isOutlier(elements[a], position, m_scale.height.radius);
-		if (outlier[a])
-			elements[a].valid = false;
-	});
-	m_hasOutliers = std::count(outlier.begin(), outlier.end(), 1) > 0;
-	for (const SurfaceElement& element : elements)
-		if (element.valid)
-			m_elements.push_back(element);
-	m_origins.resize(3, m_elements.size());
-	m_positions.resize(3, m_elements.size());
-	for (std::size_t a = 0, valid = 0; a < kept.size(); ++a)
-		if (elements[a].valid) {
-			m_origins.col(valid)   = sample.cloud.positions.col(kept[a]);
-			m_positions.col(valid) = elements[a].position;
-			++valid;
-		}
+	m_search = std::make_unique<NeighborSearch>(m_surface.positions);
 }
 
 // A little more than the distance to the eighth anchor: enough for the anchors of a face to hang together.
 double SurfaceAnchors::typicalLink() const
 {
 	std::vector<double> distances;
-	for (Index a = 0; a < std::min(size(), countedBalls); ++a) {
+	std::vector<Index> some(size());
+	std::iota(some.begin(), some.end(), 0);
+	const auto last = some.begin() + std::min(size(), countedBalls);
+	std::partial_sort(some.begin(), last, some.end(), [&](Index a, Index b) { return m_places[a] < m_places[b]; });
+	some.erase(last, some.end());
+	for (const Index a : some) {
 		const auto near = m_originSearch->nearest(m_origins.col(a), 9);
 		distances.push_back((m_origins.col(near.back()) - m_origins.col(a)).norm());
 	}
@@ -259,7 +307,7 @@ double SurfaceAnchors::jumpBetween(Index a, Index b) const
 void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 {
 	const double reach = faceReach * m_scale.height.radius;
-	m_search           = std::make_unique<NeighborSearch>(m_positions);
+	m_search           = std::make_unique<NeighborSearch>(m_surface.positions);
 	m_atCut            = m_misfit;
 	Eigen::Matrix3Xd misfits(3, std::count(m_misfit.begin(), m_misfit.end(), 1));
 	for (Index a = 0, k = 0; a < size(); ++a)
@@ -281,7 +329,7 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 		std::vector<Face>       faces    = facesAround(position);
 		if (faces.size() < 2)
 			return;
-		const double misfit = misfitOfFaces(subsets[a], position, faces);
+		const double misfit = misfitOfFaces(subsets[m_places[a]], position, faces);
 		if (misfit < faceRatio * m_noise + misfitFloor * m_scale.height.radius &&
 			misfit < faceGain * m_elements[a].residual)
 			continued[a] = nearestFace(position, std::move(faces), nullptr);
@@ -296,9 +344,10 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 	m_hasEdges = false;
 	for (Index a = 0; a < size(); ++a)
 		if (continued[a].valid) {
-			m_elements[a]      = continued[a];
-			m_positions.col(a) = continued[a].position;
-			m_hasEdges         = true;
+			m_elements[a]              = continued[a];
+			m_surface.positions.col(a) = continued[a].position;
+			m_surface.normals.col(a)   = continued[a].normal;
+			m_hasEdges                 = true;
 		}
 }
 
@@ -475,20 +524,23 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 	const double unit    = 1.0 / (m_scale.height.radius * m_scale.height.radius);
 	Index        seed    = -1;
 	double       closest = std::numeric_limits<double>::infinity();
-	thread_local std::vector<char> inBall;
+	// References: an access to a thread_local costs a call.
+	thread_local std::vector<char>  marks;
+	thread_local std::vector<Index> queue;
+	std::vector<char>&              inBall  = marks;
+	std::vector<Index>&             reached = queue;
 	inBall.resize(std::max<std::size_t>(inBall.size(), size()), 0);
 	for (const Index a : near) {
 		if (m_misfit[a] || !m_elements[a].valid)
 			continue;
 		inBall[a] = 1;
-		const double distance = unit * (m_elements[a].position - start.position).squaredNorm() +
-			4.0 * (m_elements[a].normal - start.normal).squaredNorm();
+		const double distance = unit * (m_surface.positions.col(a) - start.position).squaredNorm() +
+			4.0 * (m_surface.normals.col(a) - start.normal).squaredNorm();
 		if (distance < closest) {
 			closest = distance;
 			seed    = a;
 		}
 	}
-	thread_local std::vector<Index> reached;
 	reached.clear();
 	if (seed >= 0) {
 		reached.push_back(seed);
@@ -512,7 +564,7 @@ SurfaceAnchors::offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& 
 	Eigen::Vector3d sum   = Eigen::Vector3d::Zero();
 	double          total = 0.0;
 	for (const Index a : near) {
-		const Eigen::Vector3d d = (m_elements[a].position - center) / m_scale.normalRadius;
+		const Eigen::Vector3d d = (m_surface.positions.col(a) - center) / m_scale.normalRadius;
 		const double          w = ballKernel(d.squaredNorm());
 		sum += w * d;
 		total += w;
@@ -522,17 +574,26 @@ SurfaceAnchors::offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& 
 
 SurfaceElement SurfaceAnchors::normalField(const SurfaceElement& start) const
 {
-	thread_local std::vector<Index> near;
+	thread_local std::vector<Index> scratch;
+	std::vector<Index>&             near = scratch;
 	m_search->within(start.position, m_scale.normalRadius, near);
 	int degree = 3;
-	if (m_hasEdges && std::any_of(near.begin(), near.end(), [&](Index a) { return m_atCut[a]; })) {
-		keepConnected(start, near);
-		// A cubic through one side of a ball says little about the other.
-		const double off = offsetOf(near, start.position);
-		degree           = off > 0.25 ? 1 : off > 0.12 ? 2 : 3;
+	if (m_hasEdges) {
+		if (std::any_of(near.begin(), near.end(), [&](Index a) { return m_atCut[a]; })) {
+			keepConnected(start, near);
+			// A cubic through one side of a ball says little about the other.
+			const double off = offsetOf(near, start.position);
+			degree           = off > 0.25 ? 1 : off > 0.12 ? 2 : 3;
+		}
+		else {
+			near.erase(
+				std::remove_if(near.begin(), near.end(), [&](Index a) { return !m_elements[a].valid; }),
+				near.end());
+		}
 	}
-	return LocalSurfaceFitter::ofThisThread().fitNormals(
-		m_elements, near, start, m_scale.normalRadius, degree, m_hasOutliers);
+	LocalSurfaceFitter& fitter = LocalSurfaceFitter::ofThisThread();
+	fitter.takeBall(m_surface, near, start.position, m_scale.normalRadius);
+	return fitter.fitNormals(start, degree, m_hasOutliers);
 }
 
 } // namespace curvature_lines

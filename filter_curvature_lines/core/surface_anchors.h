@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
+
 #include "local_surface.h"
 
 namespace curvature_lines {
@@ -47,8 +49,32 @@ struct HeightScale {
 	int    degree = 2;   // of the height polynomial: 2 or 4
 };
 
-// The surface at a point of a sample from a height polynomial; falls back to degree 2, then to a larger
-// ball. `place` selects the subset.
+// The height polynomials wanted in a ball.
+struct Degrees {
+	bool quadric = false;
+	bool quartic = false;
+
+	static Degrees only(int degree) { return {degree == 2, degree == 4}; }
+};
+
+struct HeightFits {
+	SurfaceElement quadric, quartic; // invalid if not wanted or impossible
+
+	const SurfaceElement& of(int degree) const { return degree == 2 ? quadric : quartic; }
+};
+
+// The surface at a point of a sample from height polynomials; a quartic falls back to the quadric, that to a
+// larger ball. `place` selects the subset.
+HeightFits surfacesAt(
+	const PointSubsets&    subsets,
+	Index                  place,
+	const Eigen::Vector3d& position,
+	const Eigen::Vector3d& gateNormal,
+	double                 radius,
+	Degrees                degrees,
+	int                    iterations);
+
+// Only that of one degree.
 SurfaceElement surfaceAt(
 	const PointSubsets&    subsets,
 	Index                  place,
@@ -64,6 +90,21 @@ struct Zone {
 
 	bool contains(const Eigen::Vector3d& position) const;
 };
+
+// Height fits at a thinned set of points, in spatial order.
+struct AnchorFits {
+	Eigen::Matrix3Xd        points; // what was fitted at
+	std::vector<Index>      places; // of the points in the order of thinning, which is random in space
+	std::vector<HeightFits> fits;   // one per point; outliers have none
+	bool                    hasOutliers = false;
+};
+
+AnchorFits fitAnchors(
+	const PointSample&  sample,
+	const PointSubsets& subsets,
+	double              radius,
+	Degrees             degrees,
+	const Zone&         zone = {});
 
 // How to estimate the shape operator: a height polynomial at radius height.radius, then, unless
 // normalRadius is 0, a cubic polynomial of the normals of anchors within normalRadius.
@@ -89,11 +130,10 @@ struct EdgeNearby {
 class SurfaceAnchors {
 public:
 	SurfaceAnchors(
-		const PointSample&    sample,
+		const AnchorFits&     fits,
 		const PointSubsets&   subsets,
 		const CurvatureScale& scale,
-		double                noise, // of the heights (length)
-		const Zone&           zone = {});
+		double                noise); // of the heights (length)
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
 	const std::vector<SurfaceElement>& elements() const { return m_elements; }
@@ -136,7 +176,6 @@ private:
 		const Eigen::Vector3d&   position,
 		const std::vector<Face>& faces) const;
 
-	void   fitAll(const PointSample& sample, const PointSubsets& subsets, const Zone& zone);
 	double typicalLink() const;
 	void flagMisfits();
 	void link();
@@ -149,8 +188,10 @@ private:
 
 	CurvatureScale                  m_scale;
 	std::vector<SurfaceElement>     m_elements;
-	Eigen::Matrix3Xd                m_origins, m_positions;
-	std::unique_ptr<NeighborSearch> m_search;       // over m_positions
+	std::vector<Index>              m_places; // as in the fits
+	Eigen::Matrix3Xd                m_origins;
+	PointCloud                      m_surface; // positions and normals of the elements, together for the fits
+	std::unique_ptr<NeighborSearch> m_search;  // over m_surface
 	std::unique_ptr<NeighborSearch> m_originSearch; // over m_origins
 	bool                            m_hasEdges = false;
 	bool                            m_hasOutliers = false; // among the points anchors were tried at

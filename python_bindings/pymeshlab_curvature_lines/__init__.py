@@ -26,6 +26,9 @@ _FILTERS = {
     "generate_sharp_feature_lines": "Finds the sharp edges of the surface as a new polyline layer",
     "generate_curvature_aligned_quad_mesh": "Builds a quad-dominant mesh from a layer of curvature lines",
     "generate_surface_reconstruction_curvature_aligned": "From a cloud to a curvature-aligned quad mesh, in one step",
+    "compute_curvature_m_weighted_per_vertex": "Principal curvatures and directions of a clean cloud, by Euler's theorem",
+    "compute_curvature_driven_projection": "Moves vertices onto the smooth surface a cloud defines, or makes a cloud denser",
+    "save_ray_traced_point_set_image": "Draws the surface between the points into a PNG file",
 }
 
 

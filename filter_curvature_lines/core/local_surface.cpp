@@ -217,12 +217,13 @@ void LocalSurfaceFitter::takeBall(
 		}
 }
 
-Eigen::Vector3d LocalSurfaceFitter::planeNormal(const Eigen::Vector3d& normal) const
+BallPlane LocalSurfaceFitter::plane(const Eigen::Vector3d& normal) const
 {
 	PlaneMoments moments;
 	sumUp(m_ball, normal.data(), moments);
+	BallPlane plane;
 	if (!(moments.weight > 0.0))
-		return Eigen::Vector3d::Zero();
+		return plane;
 	const Eigen::Vector3d mean = Eigen::Vector3d::Map(moments.offset) / moments.weight;
 	Eigen::Matrix3d       covariance;
 	for (int r = 0, m = 0; r < 3; ++r)
@@ -230,10 +231,12 @@ Eigen::Vector3d LocalSurfaceFitter::planeNormal(const Eigen::Vector3d& normal) c
 			covariance(r, c) = covariance(c, r) = moments.square[m] / moments.weight - mean[r] * mean[c];
 	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
 	eigen.computeDirect(covariance);
-	const Eigen::Vector3d plane = eigen.eigenvectors().col(0);
-	if (!plane.allFinite())
-		return Eigen::Vector3d::Zero();
-	return plane.dot(Eigen::Vector3d::Map(moments.normal)) < 0.0 ? Eigen::Vector3d(-plane) : plane;
+	const Eigen::Vector3d thinnest = eigen.eigenvectors().col(0);
+	if (!thinnest.allFinite())
+		return plane;
+	plane.normal = thinnest.dot(Eigen::Vector3d::Map(moments.normal)) < 0.0 ? Eigen::Vector3d(-thinnest) : thinnest;
+	plane.height = m_ball.radius * plane.normal.dot(mean);
+	return plane;
 }
 
 template<int Values>

@@ -36,6 +36,11 @@ struct BallPoints {
 	std::vector<double> position[3], normal[3];
 };
 
+struct BallPlane {
+	Eigen::Vector3d normal = Eigen::Vector3d::Zero(); // zero if there is none
+	double          height = 0.0;
+};
+
 // Fits at one place. Holds the scratch of one thread.
 class LocalSurfaceFitter {
 public:
@@ -46,8 +51,9 @@ public:
 		const Eigen::Vector3d&    center,
 		double                    radius);
 
-	// Normal of the plane through the ball, towards the side of `normal`; zero if there is none.
-	Eigen::Vector3d planeNormal(const Eigen::Vector3d& normal) const;
+	// The plane through the points of the ball whose normals do not oppose `normal`: its normal, on their
+	// side, and its height above the centre (length).
+	BallPlane plane(const Eigen::Vector3d& normal) const;
 
 	// Heights over the tangent plane at `normal`, of the points whose normals do not oppose it, as a
 	// polynomial of `degree` 2 or 4. The element moves onto the fitted surface and is fitted again in the

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double anchorSpacing   = 0.18; // in radii
 constexpr int    anchorIterations = 2;
+constexpr double largestHeight    = 0.4;  // radii, of the plane through a ball above its centre
 constexpr Index  countedBalls    = 40;
 constexpr double samplesPerBall  = 256.0;
 constexpr Index  maxSubsets      = 64;
@@ -31,6 +32,7 @@ constexpr double linkStretch  = 1.15;
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
 constexpr double faceGain     = 0.9;  // and less than that of one surface
 constexpr double faceReach    = 2.2;                 // radii
+constexpr double leastFace    = 0.15; // weight over the largest one's: strays among the anchors have less
 constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
 constexpr double outlierRatio = 4.5;
 constexpr double outlierFloor = 0.02; // radii
@@ -111,22 +113,24 @@ HeightFits surfacesAt(
 	const PointSample&  sample = subsets[place];
 	std::vector<Index>& near   = scratchList();
 	LocalSurfaceFitter& fitter = LocalSurfaceFitter::ofThisThread();
-	sample.search.within(position, radius, near);
-	fitter.takeBall(sample.cloud, near, position, radius);
-	const Eigen::Vector3d normal = fitter.planeNormal(gateNormal);
-	HeightFits            fits;
+	const auto planeAt = [&](const Eigen::Vector3d& center, double r) {
+		sample.search.within(center, r, near);
+		fitter.takeBall(sample.cloud, near, center, r);
+		return fitter.plane(gateNormal);
+	};
+	BallPlane plane = planeAt(position, radius);
+	// The ball of a point off the surface holds a slanted cut of it.
+	if (std::abs(plane.height) > largestHeight * radius)
+		plane = planeAt(position + plane.height * plane.normal, radius);
+	HeightFits fits;
 	if (degrees.quartic)
-		fits.quartic = fitter.fitHeights(normal, 4, iterations);
+		fits.quartic = fitter.fitHeights(plane.normal, 4, iterations);
 	const bool lacksQuartic = degrees.quartic && !fits.quartic.valid;
 	if (!degrees.quadric && !lacksQuartic)
 		return fits;
-	SurfaceElement quadric = fitter.fitHeights(normal, 2, iterations);
-	if (!quadric.valid) {
-		const double wider = 1.5 * radius;
-		sample.search.within(position, wider, near);
-		fitter.takeBall(sample.cloud, near, position, wider);
-		quadric = fitter.fitHeights(fitter.planeNormal(gateNormal), 2, iterations);
-	}
+	SurfaceElement quadric = fitter.fitHeights(plane.normal, 2, iterations);
+	if (!quadric.valid)
+		quadric = fitter.fitHeights(planeAt(position, 1.5 * radius).normal, 2, iterations);
 	if (lacksQuartic)
 		fits.quartic = quadric;
 	if (degrees.quadric)
@@ -402,7 +406,9 @@ std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vecto
 		// The surface as a quadric around the anchor, continued to the point.
 		const Eigen::Vector3d d      = position - e.position;
 		const Eigen::Vector3d turn   = e.shape * d;
-		if (turn.norm() > largestTurn) // bent too much to be known there
+		const double          height = d.dot(e.normal) + 0.5 * d.dot(turn);
+		// Bent too much to be known there, or another sheet.
+		if (turn.norm() > largestTurn || std::abs(height) > m_scale.height.radius)
 			continue;
 		const Eigen::Vector3d normal = (e.normal + turn).normalized();
 		const double          weight = ballKernel(squared / (reach * reach)) + 1e-6;
@@ -414,12 +420,18 @@ std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vecto
 		face->normal += weight * normal;
 		face->shape += weight * e.shape;
 		face->center += weight * e.position;
-		face->height += weight * (d.dot(e.normal) + 0.5 * d.dot(turn));
+		face->height += weight * height;
 		face->weight += weight;
 		++face->members;
 	}
+	double largest = 0.0;
+	for (const Face& face : faces)
+		largest = std::max(largest, face.weight);
 	faces.erase(
-		std::remove_if(faces.begin(), faces.end(), [](const Face& f) { return f.members < 3; }),
+		std::remove_if(
+			faces.begin(),
+			faces.end(),
+			[&](const Face& f) { return f.members < 3 || f.weight < leastFace * largest; }),
 		faces.end());
 	for (Face& face : faces) {
 		face.height /= face.weight;

@@ -40,7 +40,7 @@ RichParameterList parameters(const MeshDocument& document)
 		"Surface",
 		"The surface between the points.<ul>"
 		"<li><b>Curvature-Driven</b>: quadrics of principal curvatures and directions</li>"
-		"<li><b>Moving Least Squares</b>: complete quadrics over fitted planes; slower, needs normals for "
+		"<li><b>Moving Least Squares</b>: complete quadrics over fitted planes; needs normals for "
 		"the side only</li></ul>"));
 	list.addParam(RichColor("background", QColor(255, 255, 255), "Background", "Colour where nothing is."));
 	list.addParam(RichEnum(

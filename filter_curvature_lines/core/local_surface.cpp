@@ -234,8 +234,9 @@ BallPlane LocalSurfaceFitter::plane(const Eigen::Vector3d& normal) const
 	const Eigen::Vector3d thinnest = eigen.eigenvectors().col(0);
 	if (!thinnest.allFinite())
 		return plane;
-	plane.normal = thinnest.dot(Eigen::Vector3d::Map(moments.normal)) < 0.0 ? Eigen::Vector3d(-thinnest) : thinnest;
-	plane.height = m_ball.radius * plane.normal.dot(mean);
+	const bool opposes = thinnest.dot(Eigen::Vector3d::Map(moments.normal)) < 0.0;
+	plane.normal       = opposes ? Eigen::Vector3d(-thinnest) : thinnest;
+	plane.height       = m_ball.radius * plane.normal.dot(mean);
 	return plane;
 }
 

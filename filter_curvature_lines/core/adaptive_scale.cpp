@@ -41,6 +41,7 @@ constexpr double medianOfChi2 = 0.79;  // over the mean, of three squares
 constexpr Index  poolStride     = 4; // pools of neighbouring probes hardly differ
 constexpr Index  hopelessStride = 32;
 constexpr double hopelessRatio  = 16.0;
+constexpr double surelyErrors   = 2.0; // standard errors: a bias of more is certain
 constexpr int    biasLevels     = 3; // finer ones it takes to know a bias
 constexpr double switchRatio   = 0.5;
 constexpr double riskExponent  = 4.0;
@@ -190,10 +191,12 @@ private:
 	// Bias grows with the fourth power of the radius: every finer scale q gives an estimate
 	// (T_c - T_q)_A : (T_c - T_q)_B / (1 - (r_q / r_c)^4)^2 of the squared bias at c, unbiased because the
 	// halves are independent. They are averaged by their precision.
+	// The law does not hold for detail that c smooths away whole: what a much finer scale sees counts alone
+	// where it is beyond doubt and more than a half errs there.
 	double squaredBias(std::size_t c) const
 	{
 		const Trial& trial = m_trials[c];
-		double       sum = 0.0, precision = 0.0;
+		double       sum = 0.0, precision = 0.0, certain = 0.0;
 		for (std::size_t q = 0; q < m_trials.size(); ++q) {
 			const Trial& finer = m_trials[q];
 			const double ratio = std::pow(radiusRatio(finer.scale, trial.scale), 4);
@@ -220,10 +223,13 @@ private:
 				std::max(0.0, squares / count - mean * mean) / count + 1e-30;
 			const double share  = (1.0 - ratio) * (1.0 - ratio);
 			const double weight = share * share / squaredError;
+			certain = std::max(
+				certain,
+				(mean - surelyErrors * std::sqrt(squaredError) - 2.0 * m_variance[q]) / share);
 			sum += weight * mean / share;
 			precision += weight;
 		}
-		return precision > 0.0 ? std::max(0.0, sum / precision) : 0.0;
+		return precision > 0.0 ? std::max(certain, sum / precision) : 0.0;
 	}
 
 	const std::vector<Trial>& m_trials;

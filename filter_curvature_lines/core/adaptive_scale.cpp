@@ -70,6 +70,7 @@ struct ProbeEstimate {
 	ShapeVector     shape    = ShapeVector::Zero();
 	double          residual = 0.0; // radii
 	double          offset   = 0.0;
+	bool            atEdge   = false;
 	bool            valid    = false;
 };
 
@@ -79,6 +80,7 @@ struct Trial {
 	std::array<std::vector<ProbeEstimate>, 2> halves;
 
 	bool valid(Index probe) const { return halves[0][probe].valid && halves[1][probe].valid; }
+	bool atEdge(Index probe) const { return halves[0][probe].atEdge || halves[1][probe].atEdge; }
 };
 
 std::vector<ProbeEstimate> estimateProbes(
@@ -96,6 +98,7 @@ std::vector<ProbeEstimate> estimateProbes(
 			vectorOf(element.shape),
 			starts[p].residual / scale.height.radius,
 			starts[p].offset,
+			anchors && anchors->nearEdge(positions.col(p)),
 			element.valid && (anchors || scale.normalRadius == 0.0)};
 	});
 	return estimates;
@@ -188,46 +191,62 @@ private:
 		return less ? std::min(1.0, finer.radius() / scale.radius()) : 1.0;
 	}
 
+	struct Difference {
+		double square = 0.0;
+		double error  = infinity; // standard, of the square
+	};
+
+	// (T_c - T_q)_A : (T_c - T_q)_B, the squared difference of the biases of two trials: an unbiased estimate
+	// because the halves are independent.
+	Difference difference(const Trial& trial, const Trial& finer, bool alsoAtEdges) const
+	{
+		std::vector<double> terms;
+		for (const Index p : m_pool)
+			if (trial.valid(p) && finer.valid(p) && (alsoAtEdges || !trial.atEdge(p)))
+				terms.push_back((trial.halves[0][p].shape - finer.halves[0][p].shape)
+									.dot(trial.halves[1][p].shape - finer.halves[1][p].shape));
+		if (terms.size() < 8)
+			return {};
+		const auto cut = static_cast<std::size_t>(0.5 * trim * terms.size());
+		std::nth_element(terms.begin(), terms.begin() + cut, terms.end());
+		std::nth_element(terms.begin() + cut, terms.end() - cut - 1, terms.end());
+		const auto count = static_cast<double>(terms.size() - 2 * cut);
+		double     total = 0.0, squares = 0.0;
+		for (std::size_t t = cut; t < terms.size() - cut; ++t) {
+			total += terms[t];
+			squares += terms[t] * terms[t];
+		}
+		const double mean = total / count;
+		return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / count + 1e-30)};
+	}
+
 	// Bias grows with the fourth power of the radius: every finer scale q gives an estimate
-	// (T_c - T_q)_A : (T_c - T_q)_B / (1 - (r_q / r_c)^4)^2 of the squared bias at c, unbiased because the
-	// halves are independent. They are averaged by their precision.
+	// difference / (1 - (r_q / r_c)^4)^2 of the squared bias at c. They are averaged by their precision.
 	// The law does not hold for detail that c smooths away whole: what a much finer scale sees counts alone
-	// where it is beyond doubt and more than a half errs there.
+	// where it is beyond doubt and more than a half errs there. (Beside an edge it is the finer one that errs.)
 	double squaredBias(std::size_t c) const
 	{
-		const Trial& trial = m_trials[c];
-		double       sum = 0.0, precision = 0.0, certain = 0.0;
+		const Trial& trial    = m_trials[c];
+		const bool   hasEdges = std::any_of(
+            m_pool.begin(), m_pool.end(), [&](Index p) { return trial.atEdge(p); });
+		double sum = 0.0, precision = 0.0, certain = 0.0;
 		for (std::size_t q = 0; q < m_trials.size(); ++q) {
 			const Trial& finer = m_trials[q];
 			const double ratio = std::pow(radiusRatio(finer.scale, trial.scale), 4);
 			if (ratio > 0.5 || !(m_variance[q] < infinity))
 				continue;
-			std::vector<double> terms;
-			for (const Index p : m_pool)
-				if (trial.valid(p) && finer.valid(p))
-					terms.push_back((trial.halves[0][p].shape - finer.halves[0][p].shape)
-										.dot(trial.halves[1][p].shape - finer.halves[1][p].shape));
-			if (terms.size() < 8)
+			const double     share = (1.0 - ratio) * (1.0 - ratio);
+			const Difference all   = difference(trial, finer, true);
+			if (!(all.error < infinity))
 				continue;
-			const auto cut   = static_cast<std::size_t>(0.5 * trim * terms.size());
-			std::nth_element(terms.begin(), terms.begin() + cut, terms.end());
-			std::nth_element(terms.begin() + cut, terms.end() - cut - 1, terms.end());
-			const auto count = static_cast<double>(terms.size() - 2 * cut);
-			double     total = 0.0, squares = 0.0;
-			for (std::size_t t = cut; t < terms.size() - cut; ++t) {
-				total += terms[t];
-				squares += terms[t] * terms[t];
-			}
-			const double mean = total / count;
-			const double squaredError =
-				std::max(0.0, squares / count - mean * mean) / count + 1e-30;
-			const double share  = (1.0 - ratio) * (1.0 - ratio);
-			const double weight = share * share / squaredError;
-			certain = std::max(
-				certain,
-				(mean - surelyErrors * std::sqrt(squaredError) - 2.0 * m_variance[q]) / share);
-			sum += weight * mean / share;
+			const double weight = share * share / (all.error * all.error);
+			sum += weight * all.square / share;
 			precision += weight;
+			const Difference smooth = hasEdges ? difference(trial, finer, false) : all;
+			if (smooth.error < infinity)
+				certain = std::max(
+					certain,
+					(smooth.square - surelyErrors * smooth.error - 2.0 * m_variance[q]) / share);
 		}
 		return precision > 0.0 ? std::max(certain, sum / precision) : 0.0;
 	}
@@ -405,8 +424,8 @@ private:
 			}
 			std::unique_ptr<const SurfaceAnchors> anchors;
 			if (trial.scale.normalRadius > 0.0 && (degree == 2 ? ofAnchors.quadric : ofAnchors.quartic))
-				anchors =
-					std::make_unique<const SurfaceAnchors>(anchorFits, subsets, trial.scale, m_noise);
+				anchors = std::make_unique<const SurfaceAnchors>(
+					anchorFits, subsets, trial.scale, m_noise, true);
 			trial.halves[h] = estimateProbes(anchors.get(), starts, m_positions, trial.scale);
 		}
 	}

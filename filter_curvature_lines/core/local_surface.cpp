@@ -148,34 +148,45 @@ toNormals(const BallPoints& ball, const LocalFrame& frame, LocalSamples<3>& samp
 	return int(sumOf(used));
 }
 
-// Distances of the samples from the polynomial, 0 without weight; returns the largest.
-template<int Degree>
+// Distances of the samples from the polynomials (one column of coefficients per value), 0 without weight;
+// returns the largest.
+template<int Degree, int Values>
 CURVATURE_LINES_AVX2_CLONE double
-distances(const LocalSamples<1>& samples, const double* coefficients, double* result)
+distances(const LocalSamples<Values>& samples, const double* coefficients, double* result)
 {
-	const Block zero    = {};
-	Block       largest = {};
+	constexpr int count   = monomialCount(Degree);
+	const Block   zero    = {};
+	Block         largest = {};
 	for (int s = 0; s < samples.size(); s += blockSize) {
-		const Block x    = blockAt(&samples.x[s]);
-		const Block y    = blockAt(&samples.y[s]);
-		Block       left = blockAt(&samples.value[0][s]);
-		Block       power = zero + 1.0; // x^a
+		const Block x = blockAt(&samples.x[s]);
+		const Block y = blockAt(&samples.y[s]);
+		Block       left[Values];
+		for (int v = 0; v < Values; ++v)
+			left[v] = blockAt(&samples.value[v][s]);
+		Block power = zero + 1.0; // x^a
 #pragma GCC unroll 8
 		for (int a = 0; a <= Degree; ++a) {
 			Block both = power;
 #pragma GCC unroll 8
 			for (int b = 0; b <= Degree - a; ++b) {
-				left -= coefficients[(a + b) * (a + b + 1) / 2 + b] * both;
+				const double* c = coefficients + (a + b) * (a + b + 1) / 2 + b;
+#pragma GCC unroll 4
+				for (int v = 0; v < Values; ++v)
+					left[v] -= c[v * count] * both;
 				both *= y;
 			}
 			power *= x;
 		}
-		const Block size     = left < 0.0 ? -left : left;
-		const Block counted  = blockAt(&samples.weight[s]) > 0.0 ? size : zero;
-		largest              = counted > largest ? counted : largest;
-		blockAt(&result[s]) = counted;
+		Block squared = zero;
+		for (int v = 0; v < Values; ++v)
+			squared += left[v] * left[v];
+		squared             = blockAt(&samples.weight[s]) > 0.0 ? squared : zero;
+		largest             = squared > largest ? squared : largest;
+		blockAt(&result[s]) = squared;
 	}
-	return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
+	for (int s = 0; s < samples.size(); ++s)
+		result[s] = std::sqrt(result[s]);
+	return std::sqrt(std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3])));
 }
 
 } // namespace
@@ -274,7 +285,7 @@ bool LocalSurfaceFitter::heightStep(bool lookForOutliers, SurfaceElement& elemen
 	if (!fit.valid)
 		return false;
 	if (lookForOutliers) {
-		const double largest = distances<Degree>(m_heights, fit.coefficients.data(), m_residuals.data());
+		const double largest = distances<Degree, 1>(m_heights, fit.coefficients.data(), m_residuals.data());
 		if (largest > suspicious * std::sqrt(fit.squaredResidual / fit.sumOfWeights)) {
 			reweight(m_heights);
 			fit = fitPolynomial<Degree, 1>(m_heights);
@@ -330,15 +341,8 @@ bool LocalSurfaceFitter::normalStep(bool lookForOutliers, SurfaceElement& elemen
 	if (!fit.valid)
 		return false;
 	if (lookForOutliers) {
-		double largest = 0.0;
-		for (int s = 0; s < m_normals.size(); ++s) {
-			Eigen::Vector3d residual = fit(m_normals.x[s], m_normals.y[s]);
-			for (int c = 0; c < 3; ++c)
-				residual[c] -= m_normals.value[c][s];
-			m_residuals[s] = residual.norm();
-			if (m_normals.weight[s] > 0.0)
-				largest = std::max(largest, m_residuals[s]);
-		}
+		const double largest =
+			distances<Degree, 3>(m_normals, fit.coefficients.data(), m_residuals.data());
 		if (largest > suspicious * std::sqrt(fit.squaredResidual / fit.sumOfWeights)) {
 			std::fill_n(m_robust.begin(), m_normals.size(), 1.0);
 			reweight(m_normals);

@@ -32,6 +32,7 @@ constexpr double linkStretch  = 1.15;
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
 constexpr double faceGain     = 0.9;  // and less than that of one surface
 constexpr double faceReach    = 2.2;                 // radii
+constexpr Index  sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
 constexpr double leastFace    = 0.15; // weight over the largest one's: strays among the anchors have less
 constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
 constexpr double outlierRatio = 4.5;
@@ -196,7 +197,11 @@ AnchorFits fitAnchors(
 }
 
 SurfaceAnchors::SurfaceAnchors(
-	const AnchorFits& fits, const PointSubsets& subsets, const CurvatureScale& scale, double noise) :
+	const AnchorFits&     fits,
+	const PointSubsets&   subsets,
+	const CurvatureScale& scale,
+	double                noise,
+	bool                  sketch) :
 		m_scale(scale), m_hasOutliers(fits.hasOutliers), m_noise(noise)
 {
 	std::vector<Index> valid;
@@ -218,7 +223,7 @@ SurfaceAnchors::SurfaceAnchors(
 	flagMisfits();
 	if (m_hasEdges) {
 		link();
-		continueFaces(subsets);
+		continueFaces(subsets, sketch);
 	}
 	if (m_hasEdges)
 		cutLinks();
@@ -307,28 +312,24 @@ double SurfaceAnchors::jumpBetween(Index a, Index b) const
 	return std::max(onward, backward);
 }
 
-// Before misfits have a face of their own, they separate the faces: links to them do not count.
-void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
+// The faces continued to those of `misfits` that an edge explains, from every `stride`-th anchor.
+std::vector<SurfaceElement>
+SurfaceAnchors::continuedTo(const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride)
 {
-	const double reach = faceReach * m_scale.height.radius;
-	m_search           = std::make_unique<NeighborSearch>(m_surface.positions);
-	m_atCut            = m_misfit;
-	Eigen::Matrix3Xd misfits(3, std::count(m_misfit.begin(), m_misfit.end(), 1));
-	for (Index a = 0, k = 0; a < size(); ++a)
-		if (m_misfit[a])
-			misfits.col(k++) = m_origins.col(a);
-	const NeighborSearch misfitSearch(misfits);
-	m_faces.resize(size());
+	const double           reach   = faceReach * m_scale.height.radius;
+	const Eigen::Matrix3Xd origins = m_origins(Eigen::all, misfits);
+	const NeighborSearch   misfitSearch(origins);
+	m_faces.assign(size(), {});
 	parallelFor(size(), {}, [&](Index a) {
-		if (m_misfit[a] || !misfitSearch.anyWithin(m_origins.col(a), 2.0 * reach))
+		if (m_misfit[a] || m_places[a] % stride != 0 ||
+			!misfitSearch.anyWithin(m_origins.col(a), 2.0 * reach))
 			return;
 		m_faces[a] = m_scale.normalRadius > 0.0 ? normalField(m_elements[a]) : m_elements[a];
 	});
 	std::vector<SurfaceElement> continued(size());
-	parallelFor(size(), {}, [&](Index a) {
-		if (!m_misfit[a])
-			return;
+	parallelFor(static_cast<Index>(misfits.size()), {}, [&](Index k) {
 		// A bend that is merely too tight for the radius is no edge: faces continued into it do not fit.
+		const Index             a        = misfits[k];
 		const Eigen::Vector3d   position = m_origins.col(a);
 		std::vector<Face>       faces    = facesAround(position);
 		if (faces.size() < 2)
@@ -338,6 +339,31 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets)
 			misfit < faceGain * m_elements[a].residual)
 			continued[a] = nearestFace(position, std::move(faces), nullptr);
 	});
+	return continued;
+}
+
+// Before misfits have a face of their own, they separate the faces: links to them do not count.
+void SurfaceAnchors::continueFaces(const PointSubsets& subsets, bool sketch)
+{
+	m_search = std::make_unique<NeighborSearch>(m_surface.positions);
+	m_atCut  = m_misfit;
+	std::vector<Index> misfits;
+	for (Index a = 0; a < size(); ++a)
+		if (m_misfit[a])
+			misfits.push_back(a);
+	std::vector<SurfaceElement> continued = continuedTo(misfits, subsets, sketchStride);
+	if (!sketch) {
+		std::vector<Index> found, atEdges;
+		for (const Index a : misfits)
+			if (continued[a].valid)
+				found.push_back(a);
+		const Eigen::Matrix3Xd origins = m_origins(Eigen::all, found);
+		const NeighborSearch   foundSearch(origins);
+		for (const Index a : misfits)
+			if (foundSearch.anyWithin(m_origins.col(a), faceReach * m_scale.height.radius))
+				atEdges.push_back(a);
+		continued = continuedTo(atEdges, subsets, 1);
+	}
 	// What an edge spoilt and no face explains, as in a corner, is not used.
 	for (Index a = 0; a < size(); ++a) {
 		const NeighborLists::Row row = m_links[a];

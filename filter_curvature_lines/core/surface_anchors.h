@@ -129,11 +129,13 @@ struct EdgeNearby {
 // anchors whose balls hold one face only, and normals are never fitted across.
 class SurfaceAnchors {
 public:
+	// A sketch has its faces from some of the anchors: enough to judge a scale by, not to build on.
 	SurfaceAnchors(
 		const AnchorFits&     fits,
 		const PointSubsets&   subsets,
 		const CurvatureScale& scale,
-		double                noise); // of the heights (length)
+		double                noise, // of the heights (length)
+		bool                  sketch = false);
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
 	const std::vector<SurfaceElement>& elements() const { return m_elements; }
@@ -179,7 +181,9 @@ private:
 	double typicalLink() const;
 	void flagMisfits();
 	void link();
-	void continueFaces(const PointSubsets& subsets);
+	std::vector<SurfaceElement>
+		 continuedTo(const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride);
+	void continueFaces(const PointSubsets& subsets, bool sketch);
 	void cutLinks();
 	double offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const;
 	double jumpBetween(Index a, Index b) const;

@@ -1,4 +1,4 @@
-// Random subsets, thinning and the fits at the anchors.
+// The fits at the anchors, and the faces that meet at sharp edges.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface_anchors.h"
 
@@ -18,9 +18,7 @@ namespace {
 constexpr double anchorSpacing   = 0.18; // in radii
 constexpr int    anchorIterations = 2;
 constexpr double largestHeight    = 0.4;  // radii, of the plane through a ball above its centre
-constexpr Index  countedBalls    = 40;
-constexpr double samplesPerBall  = 256.0;
-constexpr Index  maxSubsets      = 64;
+constexpr Index  countedAnchors  = 40;
 
 // Residuals this much above that of a good fit, plus this many radii, do not come from noise.
 constexpr double misfitRatio  = 0.15;
@@ -31,7 +29,7 @@ constexpr Index  minAnchors   = 30;
 constexpr double linkStretch  = 1.15;
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
 constexpr double faceGain     = 0.9;  // and less than that of one surface
-constexpr double faceReach    = 2.2;                 // radii
+constexpr double faceReach    = 3.0; // radii
 constexpr Index  sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
 constexpr double leastFace    = 0.15; // weight over the largest one's: strays among the anchors have less
 constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
@@ -50,49 +48,6 @@ std::vector<Index>& scratchList()
 }
 
 } // namespace
-
-PointCloud blockOf(const PointCloud& cloud, Index from, Index to)
-{
-	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
-}
-
-PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(sample)
-{
-	const Index        n = sample.cloud.size();
-	std::vector<double> counts;
-	std::vector<Index>  found;
-	for (Index i = 0; i < std::min(n, countedBalls); ++i) {
-		sample.search.within(sample.cloud.positions.col(i), radius, found);
-		counts.push_back(double(found.size()));
-	}
-	const auto subsets =
-		std::clamp(static_cast<Index>(medianInPlace(counts) / samplesPerBall), Index(1), maxSubsets);
-	if (subsets == 1)
-		return;
-	// Each keeps the spatial order.
-	std::vector<std::vector<Index>> members(subsets);
-	for (const Index i : sample.search.spatialOrder())
-		members[(std::int64_t(i + 1) * subsets - 1) / n].push_back(i);
-	for (const std::vector<Index>& subset : members)
-		m_subsets.push_back(std::make_unique<const PointSample>(
-			PointCloud{sample.cloud.positions(Eigen::all, subset), sample.cloud.normals(Eigen::all, subset)}));
-}
-
-std::vector<Index> thin(const PointSample& sample, double distance)
-{
-	const Index        n = sample.cloud.size();
-	std::vector<char>  covered(n, 0);
-	std::vector<Index> kept, found;
-	for (Index i = 0; i < n; ++i) {
-		if (covered[i])
-			continue;
-		kept.push_back(i);
-		sample.search.within(sample.cloud.positions.col(i), distance, found);
-		for (const Index j : found)
-			covered[j] = 1;
-	}
-	return kept;
-}
 
 bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, double radius)
 {
@@ -236,7 +191,7 @@ double SurfaceAnchors::typicalLink() const
 	std::vector<double> distances;
 	std::vector<Index> some(size());
 	std::iota(some.begin(), some.end(), 0);
-	const auto last = some.begin() + std::min(size(), countedBalls);
+	const auto last = some.begin() + std::min(size(), countedAnchors);
 	std::partial_sort(some.begin(), last, some.end(), [&](Index a, Index b) { return m_places[a] < m_places[b]; });
 	some.erase(last, some.end());
 	for (const Index a : some) {

@@ -1,0 +1,62 @@
+// Subsets by blocks of the random order; greedy thinning.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "point_subsets.h"
+
+#include <algorithm>
+
+#include "quantile.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr Index  countedBalls   = 40;
+constexpr double samplesPerBall = 256.0;
+constexpr Index  maxSubsets     = 64;
+
+} // namespace
+
+PointCloud blockOf(const PointCloud& cloud, Index from, Index to)
+{
+	return {cloud.positions.middleCols(from, to - from), cloud.normals.middleCols(from, to - from)};
+}
+
+PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(sample)
+{
+	const Index        n = sample.cloud.size();
+	std::vector<double> counts;
+	std::vector<Index>  found;
+	for (Index i = 0; i < std::min(n, countedBalls); ++i) {
+		sample.search.within(sample.cloud.positions.col(i), radius, found);
+		counts.push_back(double(found.size()));
+	}
+	const auto subsets =
+		std::clamp(static_cast<Index>(medianInPlace(counts) / samplesPerBall), Index(1), maxSubsets);
+	if (subsets == 1)
+		return;
+	// Each keeps the spatial order.
+	std::vector<std::vector<Index>> members(subsets);
+	for (const Index i : sample.search.spatialOrder())
+		members[(std::int64_t(i + 1) * subsets - 1) / n].push_back(i);
+	for (const std::vector<Index>& subset : members)
+		m_subsets.push_back(std::make_unique<const PointSample>(
+			PointCloud{sample.cloud.positions(Eigen::all, subset), sample.cloud.normals(Eigen::all, subset)}));
+}
+
+std::vector<Index> thin(const PointSample& sample, double distance)
+{
+	const Index        n = sample.cloud.size();
+	std::vector<char>  covered(n, 0);
+	std::vector<Index> kept, found;
+	for (Index i = 0; i < n; ++i) {
+		if (covered[i])
+			continue;
+		kept.push_back(i);
+		sample.search.within(sample.cloud.positions.col(i), distance, found);
+		for (const Index j : found)
+			covered[j] = 1;
+	}
+	return kept;
+}
+
+} // namespace curvature_lines

@@ -16,19 +16,23 @@ using Eigen::Vector3d;
 constexpr Index  sphereNeighbor = 6;
 constexpr double sphereFactor   = 1.5; // radius over the distance of that neighbour
 constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no surface
+constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
+constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
 constexpr int    tile           = 16;  // pixels
 
 struct Sphere {
-	Vector3d center;
+	Vector3d center, normal;
 	double   radius;
 };
 
 using SphereTree = Eigen::KdBVH<double, 3, Index>;
 
-// Where a ray is inside of a sphere, and its parameter closest to the centre.
+// A sphere that a ray passes.
 struct Passage {
-	double enter, exit, closest;
+	double start;   // where on the ray the surface is likely: at the plane of the sphere's point
+	double closest; // to the sphere's centre
 	Index  sphere;
+	bool   done;
 };
 
 // All spheres a ray passes.
@@ -56,8 +60,12 @@ struct PassageCollector {
 		const Vector3d d       = spheres[s].center - ray.origin;
 		const double   closest = d.dot(ray.direction);
 		const double   square  = spheres[s].radius * spheres[s].radius - d.squaredNorm() + closest * closest;
-		if (square > 0.0 && closest + std::sqrt(square) > 0.0)
-			passages.push_back({closest - std::sqrt(square), closest + std::sqrt(square), closest, s});
+		if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
+			return false;
+		const double slope = ray.direction.dot(spheres[s].normal);
+		const double start = d.dot(spheres[s].normal) / slope;
+		const bool   inside = std::abs(slope) > steepest && (start - closest) * (start - closest) < square;
+		passages.push_back({inside ? start : closest, closest, s, false});
 		return false;
 	}
 };
@@ -135,7 +143,7 @@ struct RayTracer::Spheres {
 
 RayTracer::RayTracer(
 	const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options) :
-		m_surface(surface), m_options(options)
+		m_surface(surface), m_control(control), m_options(options)
 {
 	const Index n       = control.cloud.size();
 	auto        spheres = std::make_unique<Spheres>();
@@ -144,12 +152,12 @@ RayTracer::RayTracer(
 		const Vector3d center = control.cloud.positions.col(i);
 		const auto     near   = control.search.nearest(center, sphereNeighbor + 1);
 		const double   radius = sphereFactor * (control.cloud.positions.col(near.back()) - center).norm();
-		spheres->all[i]       = {center, std::min(radius, largestSphere * control.spacing[i])};
+		spheres->all[i]       = {center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
 	});
 	std::vector<Index>             indices(n);
 	std::vector<SphereTree::Volume> boxes(n);
 	for (Index i = 0; i < n; ++i) {
-		const auto& [center, radius] = spheres->all[i];
+		const auto& [center, normal, radius] = spheres->all[i];
 		indices[i]                   = i;
 		boxes[i] = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
 	}
@@ -160,34 +168,65 @@ RayTracer::RayTracer(
 
 RayTracer::~RayTracer() = default;
 
-RayHit RayTracer::traceInSphere(const Ray& ray, const Vector3d& center, double radius) const
+const ControlNeighborhood* RayTracer::Memory::of(
+	Index point, const PointSetSurface& surface, const ControlPoints& control)
 {
-	RayHit hit;
-	double t     = (center - ray.origin).dot(ray.direction);
-	bool   found = true;
-	for (int it = 0; it < m_options.maxIterations; ++it) {
-		const Vector3d                    point   = ray.origin + t * ray.direction;
-		const std::optional<LocalQuadric> quadric = m_surface.near(point);
-		if (!quadric)
-			return hit;
-		const bool   before = found;
-		const double step   = stepToQuadric(*quadric, point, ray.direction, found);
-		t += step;
-		const Vector3d moved = ray.origin + t * ray.direction;
-		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
-		if (!(found || before) || (moved - center).squaredNorm() > radius * radius || !(t > 0.0))
-			return hit;
-		if (found && std::abs(step) < m_options.tolerance * quadric->spacing) {
-			hit.depth    = t;
-			hit.position = moved;
-			hit.normal   = quadric->normalAt(moved);
-			return hit;
-		}
+	Slot& slot = m_slots[point % m_slots.size()];
+	if (slot.point != point) {
+		slot.point  = point;
+		slot.usable = surface.gather(control.cloud.positions.col(point), slot.around);
 	}
-	return hit;
+	return slot.usable ? &slot.around : nullptr;
 }
 
-RayHit RayTracer::trace(const Ray& ray) const
+struct RayTracer::Approach {
+	RayHit hit;
+	double last; // where on the ray the surface was looked for
+	double turn = 1.0; // cosine between the normals there and at the sphere's point
+};
+
+RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double start, Memory& memory) const
+{
+	Approach                   result{{}, start};
+	const Sphere&              sphere = m_spheres->all[point];
+	const ControlNeighborhood* around = memory.of(point, m_surface, m_control);
+	if (around == nullptr)
+		return result;
+	double   t     = start;
+	Vector3d place = ray.origin + t * ray.direction;
+	auto     quadric = m_surface.near(*around, place);
+	if (!quadric)
+		return result;
+	bool   found = true;
+	double lastStep = 0.0, lastMove = 0.0;
+	for (int it = 0; it < m_options.maxIterations; ++it) {
+		const bool   before = found;
+		const double step   = stepToQuadric(*quadric, place, ray.direction, found);
+		// From the second quadric on, a secant step: where the surface bends more than they know, plain steps
+		// go to and fro.
+		const double change = lastStep - step;
+		lastMove = it > 0 && change * lastMove > 0.25 * lastMove * lastMove ? step * lastMove / change : step;
+		lastStep = step;
+		t += lastMove;
+		place       = ray.origin + t * ray.direction;
+		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
+		if (!(found || before) || (place - sphere.center).squaredNorm() > sphere.radius * sphere.radius || !(t > 0.0))
+			return result;
+		result.last = t;
+		if (found && std::abs(step) < m_options.tolerance * around->spacing()) {
+			const Vector3d normal = quadric->normalAt(place);
+			result.turn           = normal.dot(around->side());
+			if (result.turn > opposed && !around->pastEdge(place, normal))
+				result.hit = {t, place, normal};
+			return result;
+		}
+		if (!m_surface.follow(*around, place, *quadric))
+			return result;
+	}
+	return result;
+}
+
+RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 {
 	RayHit best;
 	if (m_spheres->all.empty())
@@ -197,18 +236,37 @@ RayHit RayTracer::trace(const Ray& ray) const
 	PassageCollector collector{m_spheres->all, ray, ray.direction.cwiseInverse(), passages};
 	Eigen::BVIntersect(m_spheres->tree, collector);
 	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
-		return a.enter != b.enter ? a.enter < b.enter : a.sphere < b.sphere;
+		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
 	});
-	// Spheres that hold the hit already found would find it again: only what lies before it is of interest.
-	for (const Passage& passage : passages) {
-		if (passage.enter > best.depth)
-			break;
-		if (passage.exit > best.depth)
+	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
+		if (passages[first].done)
 			continue;
-		const Sphere& sphere = m_spheres->all[passage.sphere];
-		const RayHit  hit    = traceInSphere(ray, sphere.center, sphere.radius);
-		if (hit.depth < best.depth)
-			best = hit;
+		// Of the spheres that expect the surface about here, the one whose point is closest to the ray there.
+		const double   from  = passages[first].start, near = m_spheres->all[passages[first].sphere].radius;
+		const Vector3d place = ray.origin + from * ray.direction;
+		std::size_t    chosen  = first;
+		double         closest = std::numeric_limits<double>::infinity();
+		for (std::size_t k = first; k < passages.size() && passages[k].start < from + near; ++k) {
+			const double distance = (m_spheres->all[passages[k].sphere].center - place).squaredNorm();
+			if (!passages[k].done && distance < closest) {
+				closest = distance;
+				chosen  = k;
+			}
+		}
+		Approach found = approach(ray, passages[chosen].sphere, passages[chosen].start, memory);
+		if (found.hit.exists() && found.turn < doubtful) {
+			// Near sharp edges neighbourhoods differ: that of the closest point decides.
+			const Index nearest = m_control.search.nearest(found.hit.position, 1).front();
+			if (nearest != passages[chosen].sphere)
+				found = approach(ray, nearest, found.hit.depth, memory);
+		}
+		if (found.hit.depth < best.depth)
+			best = found.hit;
+		// Spheres about there would find the same.
+		passages[first].done = passages[chosen].done = true;
+		for (Passage& passage : passages)
+			if (std::abs(passage.closest - found.last) < (found.hit.exists() ? 1.0 : 0.5) * m_spheres->all[passage.sphere].radius)
+				passage.done = true;
 	}
 	return best;
 }
@@ -222,11 +280,12 @@ std::vector<RayHit> traceImage(
 	std::vector<RayHit> hits(std::size_t(options.width) * options.height);
 	const int           columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
 	parallelFor(columns * rows, progress, [&](Index t) {
-		const int left = tile * (t % columns), top = tile * (t / columns);
+		const int         left = tile * (t % columns), top = tile * (t / columns);
+		RayTracer::Memory memory;
 		for (int y = top; y < std::min(top + tile, options.height); ++y)
 			for (int x = left; x < std::min(left + tile, options.width); ++x)
 				hits[std::size_t(y) * options.width + x] =
-					tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5));
+					tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5), memory);
 	});
 	return hits;
 }

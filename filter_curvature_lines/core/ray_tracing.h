@@ -21,7 +21,7 @@ struct Camera {
 
 struct RayTracingOptions {
 	int    width = 533, height = 400; // pixels
-	double tolerance     = 1e-4;      // in local spacings, of the point on the surface
+	double tolerance     = 1e-2;      // in local spacings: the last step along the ray, many times the error left
 	int    maxIterations = 10;        // quadrics per sphere
 };
 
@@ -43,15 +43,35 @@ public:
 	RayTracer(const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options);
 	~RayTracer();
 
-	RayHit trace(const Ray& ray) const;
+	// What rays next to each other share: neighbourhoods of the spheres they have met. Changes no result. One
+	// per thread.
+	class Memory;
+
+	RayHit trace(const Ray& ray, Memory& memory) const;
 
 private:
 	struct Spheres;
-	RayHit traceInSphere(const Ray& ray, const Eigen::Vector3d& center, double radius) const;
+	struct Approach;
+	Approach approach(const Ray& ray, Index point, double start, Memory& memory) const;
 
 	const PointSetSurface&         m_surface;
+	ControlPoints                  m_control;
 	RayTracingOptions              m_options;
 	std::unique_ptr<const Spheres> m_spheres;
+};
+
+class RayTracer::Memory {
+public:
+	// The neighbourhood of a control point; null where the surface has none.
+	const ControlNeighborhood* of(Index point, const PointSetSurface& surface, const ControlPoints& control);
+
+private:
+	struct Slot {
+		Index               point  = -1;
+		bool                usable = false;
+		ControlNeighborhood around;
+	};
+	std::vector<Slot> m_slots = std::vector<Slot>(256);
 };
 
 Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double column, double row);

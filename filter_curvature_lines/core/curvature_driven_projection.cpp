@@ -18,7 +18,7 @@ using Diffusion = CurvatureDrivenOptions::Diffusion;
 
 constexpr double gaussianReach = 2.4;  // bandwidths: beyond, weights are below 1/300
 constexpr double curvatureReach = 1.8; // bandwidths: M weights are largest at the root of xi
-constexpr double settled        = 1e-4; // spacings: what diffusion moves at last
+constexpr double settled        = 1e-3; // spacings: what diffusion moves at last
 
 } // namespace
 
@@ -123,11 +123,11 @@ std::optional<LocalQuadric> CurvatureDrivenSurface::near(
 bool CurvatureDrivenSurface::follow(
 	const ControlNeighborhood& around, const Vector3d& place, LocalQuadric& quadric) const
 {
-	const auto base = diffuse(around, place);
-	if (!base)
+	const NormalSums sums = around.normalSums(place, m_options.bandwidth * around.spacing());
+	if (!(sums.weight > 0.0) || !(sums.normal.norm() > 0.0))
 		return false;
-	quadric.origin = base->point;
-	quadric.n      = base->normal;
+	quadric.n      = sums.normal.normalized();
+	quadric.origin = place + moveAlong(quadric.n, around, place, sums) * quadric.n;
 	quadric.u      = (quadric.u - quadric.u.dot(quadric.n) * quadric.n).normalized();
 	quadric.v      = quadric.n.cross(quadric.u);
 	return true;

@@ -31,7 +31,7 @@ public:
 	// directions; k1 and k2 are T06's here, positive where the surface bends towards the normal.
 	std::optional<LocalQuadric> near(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place) const override;
-	// Steps 3 and 4 alone: curvature moves points towards the surface, it does not say where it is.
+	// One step of 3 and 4 alone: curvature moves points towards the surface, it does not say where it is.
 	bool follow(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const override;
 

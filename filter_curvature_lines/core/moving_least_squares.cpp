@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double gaussianReach = 2.4;  // bandwidths: beyond, weights are below 1/300
-constexpr double settled       = 1e-4; // spacings: what the plane moves at last
+constexpr double settled       = 1e-3; // spacings: what the plane moves at last
 
 } // namespace
 

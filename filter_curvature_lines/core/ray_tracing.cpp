@@ -14,9 +14,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr Index  sphereNeighbor = 6;
-constexpr double sphereFactor   = 1.5; // radius over the distance of that neighbour
+constexpr double sphereFactor   = 1.2; // radius over the distance of that neighbour
 constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no surface
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
+constexpr double strayed = 1.5; // radii: so far from a sphere's centre others know the surface better
 constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
 constexpr int    tile           = 16;  // pixels
 
@@ -168,15 +169,17 @@ RayTracer::RayTracer(
 
 RayTracer::~RayTracer() = default;
 
-const ControlNeighborhood* RayTracer::Memory::of(
-	Index point, const PointSetSurface& surface, const ControlPoints& control)
+const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory) const
 {
-	Slot& slot = m_slots[point % m_slots.size()];
+	Memory::Slot& slot = memory.m_slots[point % memory.m_slots.size()];
 	if (slot.point != point) {
-		slot.point  = point;
-		slot.usable = surface.gather(control.cloud.positions.col(point), slot.around);
+		const Vector3d place = m_control.cloud.positions.col(point);
+		slot.point           = point;
+		slot.quadric.reset();
+		if (m_surface.gather(place, slot.around))
+			slot.quadric = m_surface.near(slot.around, place);
 	}
-	return slot.usable ? &slot.around : nullptr;
+	return slot;
 }
 
 struct RayTracer::Approach {
@@ -189,38 +192,36 @@ RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double star
 {
 	Approach                   result{{}, start};
 	const Sphere&              sphere = m_spheres->all[point];
-	const ControlNeighborhood* around = memory.of(point, m_surface, m_control);
-	if (around == nullptr)
+	const Memory::Slot&        slot   = surfaceAt(point, memory);
+	if (!slot.quadric)
 		return result;
-	double   t     = start;
-	Vector3d place = ray.origin + t * ray.direction;
-	auto     quadric = m_surface.near(*around, place);
-	if (!quadric)
-		return result;
-	bool   found = true;
-	double lastStep = 0.0, lastMove = 0.0;
+	LocalQuadric quadric = *slot.quadric;
+	double       t       = start;
+	Vector3d     place   = ray.origin + t * ray.direction;
+	bool         found   = true;
+	double       lastStep = 0.0, lastMove = 0.0;
 	for (int it = 0; it < m_options.maxIterations; ++it) {
 		const bool   before = found;
-		const double step   = stepToQuadric(*quadric, place, ray.direction, found);
+		const double step   = stepToQuadric(quadric, place, ray.direction, found);
 		// From the second quadric on, a secant step: where the surface bends more than they know, plain steps
 		// go to and fro.
 		const double change = lastStep - step;
-		lastMove = it > 0 && change * lastMove > 0.25 * lastMove * lastMove ? step * lastMove / change : step;
+		lastMove = it > 1 && change * lastMove > 0.25 * lastMove * lastMove ? step * lastMove / change : step;
 		lastStep = step;
 		t += lastMove;
 		place       = ray.origin + t * ray.direction;
 		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
-		if (!(found || before) || (place - sphere.center).squaredNorm() > sphere.radius * sphere.radius || !(t > 0.0))
+		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius || !(t > 0.0))
 			return result;
 		result.last = t;
-		if (found && std::abs(step) < m_options.tolerance * around->spacing()) {
-			const Vector3d normal = quadric->normalAt(place);
-			result.turn           = normal.dot(around->side());
-			if (result.turn > opposed && !around->pastEdge(place, normal))
+		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
+			const Vector3d normal = quadric.normalAt(place);
+			result.turn           = normal.dot(slot.around.side());
+			if (result.turn > opposed && !slot.around.pastEdge(place, normal))
 				result.hit = {t, place, normal};
 			return result;
 		}
-		if (!m_surface.follow(*around, place, *quadric))
+		if (!m_surface.follow(slot.around, place, quadric))
 			return result;
 	}
 	return result;

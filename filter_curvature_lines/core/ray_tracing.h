@@ -45,7 +45,15 @@ public:
 
 	// What rays next to each other share: neighbourhoods of the spheres they have met. Changes no result. One
 	// per thread.
-	class Memory;
+	class Memory {
+		friend class RayTracer;
+		struct Slot {
+			Index                       point = -1;
+			ControlNeighborhood         around;
+			std::optional<LocalQuadric> quadric; // at the point; none where there is no surface
+		};
+		std::vector<Slot> m_slots = std::vector<Slot>(256);
+	};
 
 	RayHit trace(const Ray& ray, Memory& memory) const;
 
@@ -53,25 +61,12 @@ private:
 	struct Spheres;
 	struct Approach;
 	Approach approach(const Ray& ray, Index point, double start, Memory& memory) const;
+	const Memory::Slot& surfaceAt(Index point, Memory& memory) const;
 
 	const PointSetSurface&         m_surface;
 	ControlPoints                  m_control;
 	RayTracingOptions              m_options;
 	std::unique_ptr<const Spheres> m_spheres;
-};
-
-class RayTracer::Memory {
-public:
-	// The neighbourhood of a control point; null where the surface has none.
-	const ControlNeighborhood* of(Index point, const PointSetSurface& surface, const ControlPoints& control);
-
-private:
-	struct Slot {
-		Index               point  = -1;
-		bool                usable = false;
-		ControlNeighborhood around;
-	};
-	std::vector<Slot> m_slots = std::vector<Slot>(256);
 };
 
 Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double column, double row);

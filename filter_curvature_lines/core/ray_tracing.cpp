@@ -239,6 +239,7 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
 		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
 	});
+	double slipped = 0.0; // no back before
 	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
 		if (passages[first].done)
 			continue;
@@ -261,6 +262,12 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 			if (nearest != passages[chosen].sphere)
 				found = approach(ray, nearest, found.hit.depth, memory);
 		}
+		// At thin rims a ray may slip past the rounded front and meet the back, from inside.
+		const Sphere& sphere = m_spheres->all[passages[chosen].sphere];
+		if (!found.hit.exists() && sphere.normal.dot(ray.direction) < 0.0)
+			slipped = std::max(slipped, passages[chosen].closest + 2.0 * sphere.radius);
+		if (found.hit.depth < slipped && found.hit.normal.dot(ray.direction) > 0.0)
+			found.hit = {};
 		if (found.hit.depth < best.depth)
 			best = found.hit;
 		// Spheres about there would find the same.

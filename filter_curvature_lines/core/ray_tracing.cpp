@@ -32,6 +32,7 @@ using SphereTree = Eigen::KdBVH<double, 3, Index>;
 struct Passage {
 	double start;   // where on the ray the surface is likely: at the plane of the sphere's point
 	double closest; // to the sphere's centre
+	double off;     // square of how far the plane is met from the centre; larger than all these where it is not met
 	Index  sphere;
 	bool   done;
 };
@@ -60,13 +61,15 @@ struct PassageCollector {
 	{
 		const Vector3d d       = spheres[s].center - ray.origin;
 		const double   closest = d.dot(ray.direction);
-		const double   square  = spheres[s].radius * spheres[s].radius - d.squaredNorm() + closest * closest;
+		const double   whole = spheres[s].radius * spheres[s].radius, aside = d.squaredNorm() - closest * closest;
+		const double   square = whole - aside; // of half the passage
 		if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
 			return false;
 		const double slope = ray.direction.dot(spheres[s].normal);
 		const double start = d.dot(spheres[s].normal) / slope;
 		const bool   inside = std::abs(slope) > steepest && (start - closest) * (start - closest) < square;
-		passages.push_back({inside ? start : closest, closest, s, false});
+		const double along = start - closest;
+		passages.push_back({inside ? start : closest, closest, aside + (inside ? along * along : whole), s, false});
 		return false;
 	}
 };
@@ -243,18 +246,12 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
 		if (passages[first].done)
 			continue;
-		// Of the spheres that expect the surface about here, the one whose point is closest to the ray there.
-		const double   from  = passages[first].start, near = m_spheres->all[passages[first].sphere].radius;
-		const Vector3d place = ray.origin + from * ray.direction;
-		std::size_t    chosen  = first;
-		double         closest = std::numeric_limits<double>::infinity();
-		for (std::size_t k = first; k < passages.size() && passages[k].start < from + near; ++k) {
-			const double distance = (m_spheres->all[passages[k].sphere].center - place).squaredNorm();
-			if (!passages[k].done && distance < closest) {
-				closest = distance;
-				chosen  = k;
-			}
-		}
+		// Of the spheres that expect the surface about here, the one whose point is closest to it.
+		const double last   = passages[first].start + m_spheres->all[passages[first].sphere].radius;
+		std::size_t  chosen = first;
+		for (std::size_t k = first; k < passages.size() && passages[k].start < last; ++k)
+			if (!passages[k].done && passages[k].off < passages[chosen].off)
+				chosen = k;
 		Approach found = approach(ray, passages[chosen].sphere, passages[chosen].start, memory);
 		if (found.hit.exists() && found.turn < doubtful) {
 			// Near sharp edges neighbourhoods differ: that of the closest point decides.

@@ -98,15 +98,24 @@ CURVATURE_LINES_AVX2_CLONE void project(
 
 bool ControlNeighborhood::gather(const ControlPoints& control, const Vector3d& place, double reach)
 {
-	m_size = m_padded = 0;
 	if (!place.allFinite() || control.cloud.size() == 0)
 		return false;
+	return gather(control, place, control.search.nearest(place, 1).front(), reach);
+}
+
+bool ControlNeighborhood::gather(const ControlPoints& control, Index point, double reach)
+{
+	return gather(control, control.cloud.positions.col(point), point, reach);
+}
+
+bool ControlNeighborhood::gather(
+	const ControlPoints& control, const Vector3d& place, Index closest, double reach)
+{
 	const Eigen::Matrix3Xd& positions = control.cloud.positions;
 	const Eigen::Matrix3Xd& normals   = control.cloud.normals;
 	const auto              distance  = [&](Index j) { return (positions.col(j) - place).norm(); };
 
-	const Index closest = control.search.nearest(place, 1).front();
-	double      radius  = reach * control.spacing[closest];
+	double radius = reach * control.spacing[closest];
 	if (!(radius > 0.0) || distance(closest) > isolated * control.spacing[closest])
 		return false;
 	control.search.within(place, radius, m_found);
@@ -124,7 +133,9 @@ bool ControlNeighborhood::gather(const ControlPoints& control, const Vector3d& p
 
 	m_size   = int(m_found.size());
 	m_padded = (m_size + blockSize - 1) / blockSize * blockSize;
-	m_rows.assign(std::size_t(6) * m_padded, farAway);
+	m_rows.resize(std::size_t(6) * m_padded);
+	for (int r = 0; r < 6; ++r)
+		std::fill(m_rows.begin() + r * m_padded + m_size, m_rows.begin() + (r + 1) * m_padded, farAway);
 	double total = 0.0;
 	m_spacing    = 0.0;
 	for (int k = 0; k < m_size; ++k) {

@@ -35,6 +35,8 @@ public:
 	// The control points within `reach` local spacings, without those whose normals oppose that of the
 	// closest. False where there is no surface: farther than three spacings from the closest.
 	bool gather(const ControlPoints& control, const Eigen::Vector3d& place, double reach);
+	// The same around a control point.
+	bool gather(const ControlPoints& control, Index point, double reach);
 
 	double                 spacing() const { return m_spacing; } // around: changes gradually from place to place
 	const Eigen::Vector3d& side() const { return m_side; }       // normal of the closest point
@@ -51,6 +53,7 @@ public:
 		const Eigen::Vector3d& place, const TangentFrame& frame, double h, LocalSamples<1>& samples) const;
 
 private:
+	bool gather(const ControlPoints& control, const Eigen::Vector3d& place, Index closest, double reach);
 	const double* row(int r) const { return m_rows.data() + std::size_t(r) * m_padded; }
 
 	std::vector<double> m_rows; // x, y, z and the normals' components; padded with points far away

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double gaussianReach = 2.4;  // bandwidths: beyond, weights are below 1/300
+constexpr double gaussianReach = 2.2;  // bandwidths: beyond, weights are below a hundredth
 constexpr double settled       = 1e-3; // spacings: what the plane moves at last
 
 } // namespace

@@ -44,6 +44,11 @@ public:
 	{
 		return around.gather(m_control, place, m_reach);
 	}
+	// Around a control point.
+	bool gather(Index point, ControlNeighborhood& around) const
+	{
+		return around.gather(m_control, point, m_reach);
+	}
 	// Nothing where the points around do not tell.
 	virtual std::optional<LocalQuadric> near(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place) const = 0;

@@ -13,11 +13,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  sphereNeighbor = 6;
-constexpr double sphereFactor   = 1.2; // radius over the distance of that neighbour
+constexpr Index  sphereNeighbor = 6;   // as far as that from its point a sphere reaches
 constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no surface
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
-constexpr double strayed = 1.5; // radii: so far from a sphere's centre others know the surface better
+constexpr double strayed = 1.8; // radii: so far from a sphere's centre others know the surface better
+constexpr double behind = 2.4;  // radii: so close behind a front that was missed, a back is an artefact
 constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
 constexpr int    tile           = 16;  // pixels
 
@@ -155,7 +155,7 @@ RayTracer::RayTracer(
 	parallelFor(n, {}, [&](Index i) {
 		const Vector3d center = control.cloud.positions.col(i);
 		const auto     near   = control.search.nearest(center, sphereNeighbor + 1);
-		const double   radius = sphereFactor * (control.cloud.positions.col(near.back()) - center).norm();
+		const double   radius = (control.cloud.positions.col(near.back()) - center).norm();
 		spheres->all[i]       = {center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
 	});
 	std::vector<Index>             indices(n);
@@ -176,11 +176,10 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 {
 	Memory::Slot& slot = memory.m_slots[point % memory.m_slots.size()];
 	if (slot.point != point) {
-		const Vector3d place = m_control.cloud.positions.col(point);
-		slot.point           = point;
+		slot.point = point;
 		slot.quadric.reset();
-		if (m_surface.gather(place, slot.around))
-			slot.quadric = m_surface.near(slot.around, place);
+		if (m_surface.gather(point, slot.around))
+			slot.quadric = m_surface.near(slot.around, m_control.cloud.positions.col(point));
 	}
 	return slot;
 }
@@ -262,7 +261,7 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 		// At thin rims a ray may slip past the rounded front and meet the back, from inside.
 		const Sphere& sphere = m_spheres->all[passages[chosen].sphere];
 		if (!found.hit.exists() && sphere.normal.dot(ray.direction) < 0.0)
-			slipped = std::max(slipped, passages[chosen].closest + 2.0 * sphere.radius);
+			slipped = std::max(slipped, passages[chosen].closest + behind * sphere.radius);
 		if (found.hit.depth < slipped && found.hit.normal.dot(ray.direction) > 0.0)
 			found.hit = {};
 		if (found.hit.depth < best.depth)

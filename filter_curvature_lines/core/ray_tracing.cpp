@@ -19,7 +19,7 @@ constexpr double steepest       = 0.05; // sine of a ray's angle to a plane wort
 constexpr double strayed = 1.8; // radii: so far from a sphere's centre others know the surface better
 constexpr double behind = 2.4;  // radii: so close behind a front that was missed, a back is an artefact
 constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
-constexpr int    tile           = 16;  // pixels
+constexpr int    tile = 16, beam = 4;  // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
 	Vector3d center, normal;
@@ -37,19 +37,20 @@ struct Passage {
 	bool   done;
 };
 
-// All spheres a ray passes.
-struct PassageCollector {
+// All spheres within a distance of a ray.
+struct SphereCollector {
 	const std::vector<Sphere>& spheres;
 	const Ray&                 ray;
 	const Vector3d             inverse;
-	std::vector<Passage>&      passages;
+	double                     distance;
+	std::vector<Index>&        found;
 
 	bool intersectVolume(const SphereTree::Volume& box) const
 	{
 		double first = 0.0, last = std::numeric_limits<double>::infinity();
 		for (int c = 0; c < 3; ++c) {
-			double a = (box.min()[c] - ray.origin[c]) * inverse[c];
-			double b = (box.max()[c] - ray.origin[c]) * inverse[c];
+			double a = (box.min()[c] - distance - ray.origin[c]) * inverse[c];
+			double b = (box.max()[c] + distance - ray.origin[c]) * inverse[c];
 			if (a > b)
 				std::swap(a, b);
 			first = a > first ? a : first; // not std::max: of 0 * infinity nothing follows
@@ -60,19 +61,27 @@ struct PassageCollector {
 	bool intersectObject(Index s)
 	{
 		const Vector3d d       = spheres[s].center - ray.origin;
-		const double   closest = d.dot(ray.direction);
-		const double   whole = spheres[s].radius * spheres[s].radius, aside = d.squaredNorm() - closest * closest;
-		const double   square = whole - aside; // of half the passage
-		if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
-			return false;
-		const double slope = ray.direction.dot(spheres[s].normal);
-		const double start = d.dot(spheres[s].normal) / slope;
-		const bool   inside = std::abs(slope) > steepest && (start - closest) * (start - closest) < square;
-		const double along = start - closest;
-		passages.push_back({inside ? start : closest, closest, aside + (inside ? along * along : whole), s, false});
+		const double   closest = d.dot(ray.direction), reach = spheres[s].radius + distance;
+		if (d.squaredNorm() - closest * closest < reach * reach && closest + reach > 0.0)
+			found.push_back(s);
 		return false;
 	}
 };
+
+// Adds the passage of a ray through a sphere to others, if it meets it.
+void addPassage(const Ray& ray, const Sphere& sphere, Index index, std::vector<Passage>& passages)
+{
+	const Vector3d d       = sphere.center - ray.origin;
+	const double   closest = d.dot(ray.direction);
+	const double   whole = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
+	const double   square = whole - aside; // of half the passage
+	if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
+		return;
+	const double slope  = ray.direction.dot(sphere.normal);
+	const double start  = d.dot(sphere.normal) / slope, along = start - closest;
+	const bool   inside = std::abs(slope) > steepest && along * along < square;
+	passages.push_back({inside ? start : closest, closest, aside + (inside ? along * along : whole), index, false});
+}
 
 // The root of the quadric along `direction` from `start` (both in space) that is nearest to start; where there
 // is none, the place of closest approach, and `found` is false.
@@ -229,15 +238,32 @@ RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double star
 	return result;
 }
 
+void RayTracer::aim(const Ray& axis, double spread, Memory& memory) const
+{
+	memory.m_spheres.clear();
+	if (m_spheres->all.empty())
+		return;
+	const auto&  box      = m_spheres->tree.getVolume(m_spheres->tree.getRootIndex());
+	const double farthest = (axis.origin - box.center()).norm() + 0.5 * box.diagonal().norm();
+	SphereCollector collector{
+		m_spheres->all, axis, axis.direction.cwiseInverse(), spread * farthest, memory.m_spheres};
+	Eigen::BVIntersect(m_spheres->tree, collector);
+}
+
+RayHit RayTracer::trace(const Ray& ray) const
+{
+	Memory memory;
+	aim(ray, 0.0, memory);
+	return trace(ray, memory);
+}
+
 RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 {
 	RayHit best;
-	if (m_spheres->all.empty())
-		return best;
 	thread_local std::vector<Passage> passages;
 	passages.clear();
-	PassageCollector collector{m_spheres->all, ray, ray.direction.cwiseInverse(), passages};
-	Eigen::BVIntersect(m_spheres->tree, collector);
+	for (const Index s : memory.m_spheres)
+		addPassage(ray, m_spheres->all[s], s, passages);
 	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
 		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
 	});
@@ -275,6 +301,21 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 	return best;
 }
 
+void aimAt(
+	const RayTracer& tracer, const Camera& camera, const RayTracingOptions& image,
+	double column, double row, double size, RayTracer::Memory& memory)
+{
+	const Ray axis   = rayThrough(camera, image, column, row);
+	double    spread = 0.0;
+	for (const double dx : {-0.5, 0.5})
+		for (const double dy : {-0.5, 0.5}) {
+			const Vector3d corner = rayThrough(camera, image, column + dx * size, row + dy * size).direction;
+			const double   along  = corner.dot(axis.direction);
+			spread                = std::max(spread, (corner / along - axis.direction).norm());
+		}
+	tracer.aim(axis, spread, memory);
+}
+
 std::vector<RayHit> traceImage(
 	const RayTracer&         tracer,
 	const Camera&            camera,
@@ -282,14 +323,18 @@ std::vector<RayHit> traceImage(
 	const Progress&          progress)
 {
 	std::vector<RayHit> hits(std::size_t(options.width) * options.height);
-	const int           columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
+	const int columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
 	parallelFor(columns * rows, progress, [&](Index t) {
 		const int         left = tile * (t % columns), top = tile * (t / columns);
 		RayTracer::Memory memory;
-		for (int y = top; y < std::min(top + tile, options.height); ++y)
-			for (int x = left; x < std::min(left + tile, options.width); ++x)
-				hits[std::size_t(y) * options.width + x] =
-					tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5), memory);
+		for (int block = 0; block < (tile / beam) * (tile / beam); ++block) {
+			const int x0 = left + beam * (block % (tile / beam)), y0 = top + beam * (block / (tile / beam));
+			aimAt(tracer, camera, options, x0 + 0.5 * beam, y0 + 0.5 * beam, beam, memory);
+			for (int y = y0; y < std::min(y0 + beam, options.height); ++y)
+				for (int x = x0; x < std::min(x0 + beam, options.width); ++x)
+					hits[std::size_t(y) * options.width + x] =
+						tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5), memory);
+		}
 	});
 	return hits;
 }

@@ -171,6 +171,7 @@ Picture renderPicture(
 				continue;
 			}
 			Vector3d sum = Vector3d::Zero();
+			aimAt(tracer, camera, options.image, x + 0.5, y + 0.5, 1.0, memory);
 			for (const double dx : {0.25, 0.75})
 				for (const double dy : {0.25, 0.75})
 					sum += colorOf(tracer.trace(rayThrough(camera, options.image, x + dx, y + dy), memory));

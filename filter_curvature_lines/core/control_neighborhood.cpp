@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double isolated = 3.0; // spacings
-// Of uneven clouds a ball may hold very few points or very many; then so many nearest ones are taken.
+// Of uneven clouds a ball may hold very few points of the sheet, or very many.
 constexpr Index fewest = 24, most = 240, instead = 60;
 constexpr double farAway = 1e30;
 constexpr double opposing = -0.34; // cosine: the faces of a right angle are one sheet, those of a thin plate two
@@ -118,18 +118,26 @@ bool ControlNeighborhood::gather(
 	double radius = reach * control.spacing[closest];
 	if (!(radius > 0.0) || distance(closest) > isolated * control.spacing[closest])
 		return false;
-	control.search.within(place, radius, m_found);
-	if (Index(m_found.size()) < fewest || Index(m_found.size()) > most) {
-		m_found = control.search.nearest(place, instead);
-		radius  = distance(m_found.back());
-	}
 	m_side = normals.col(closest);
-	m_opposing.clear();
 	const auto sameSheet = [&](Index j) { return normals.col(j).dot(m_side) > opposing; };
-	for (const Index j : m_found)
-		if (!sameSheet(j))
-			m_opposing.push_back({positions.col(j), normals.col(j)});
-	m_found.erase(std::stable_partition(m_found.begin(), m_found.end(), sameSheet), m_found.end());
+	control.search.within(place, radius, m_found);
+	auto  others = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
+	Index limit  = most;
+	if (others - m_found.begin() < fewest) {
+		m_found = control.search.nearest(place, most);
+		others  = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
+		limit   = instead;
+	}
+	m_opposing.clear();
+	for (auto j = others; j != m_found.end(); ++j)
+		m_opposing.push_back({positions.col(*j), normals.col(*j)});
+	m_found.erase(others, m_found.end());
+	if (Index(m_found.size()) > limit) {
+		std::nth_element(m_found.begin(), m_found.begin() + instead, m_found.end(), [&](Index i, Index j) {
+			return std::make_pair(distance(i), i) < std::make_pair(distance(j), j);
+		});
+		m_found.resize(instead);
+	}
 
 	m_size   = int(m_found.size());
 	m_padded = (m_size + blockSize - 1) / blockSize * blockSize;
@@ -145,7 +153,7 @@ bool ControlNeighborhood::gather(
 			m_rows[std::size_t(3 + c) * m_padded + k] = normals(c, j);
 		}
 		const double share = distance(j) / radius;
-		const double w     = 1.0 + 1e-9 - share * share; // positive also where all lie on the rim
+		const double w     = std::max(0.05, 1.0 - share * share);
 		m_spacing += w * control.spacing[j];
 		total += w;
 	}

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 using Diffusion = CurvatureDrivenOptions::Diffusion;
 
-constexpr double gaussianReach = 2.2;  // bandwidths: beyond, weights are below a hundredth
-constexpr double curvatureReach = 1.76; // bandwidths: M weights are largest at the root of xi
+constexpr double gaussianReach = 2.0;  // bandwidths: beyond, weights are below a fiftieth
+constexpr double curvatureReach = 1.6; // bandwidths: M weights are largest at the root of xi
 constexpr double settled        = 1e-3; // spacings: what diffusion moves at last
 
 } // namespace

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double gaussianReach = 2.2;  // bandwidths: beyond, weights are below a hundredth
+constexpr double gaussianReach = 2.0;  // bandwidths: beyond, weights are below a fiftieth
 constexpr double settled       = 1e-3; // spacings: what the plane moves at last
 
 } // namespace

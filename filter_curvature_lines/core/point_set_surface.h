@@ -44,10 +44,10 @@ public:
 	{
 		return around.gather(m_control, place, m_reach);
 	}
-	// Around a control point.
-	bool gather(Index point, ControlNeighborhood& around) const
+	// Those that define it up to `margin` local spacings from a control point.
+	bool gather(Index point, double margin, ControlNeighborhood& around) const
 	{
-		return around.gather(m_control, point, m_reach);
+		return around.gather(m_control, point, m_reach + margin);
 	}
 	// Nothing where the points around do not tell.
 	virtual std::optional<LocalQuadric> near(

@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 constexpr Index  sphereNeighbor = 6;   // as far as that from its point a sphere reaches
 constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no surface
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
+constexpr double margin  = 0.5;  // spacings: most places are that close to the point of their sphere
 constexpr double strayed = 1.8; // radii: so far from a sphere's centre others know the surface better
 constexpr double behind = 2.4;  // radii: so close behind a front that was missed, a back is an artefact
 constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
@@ -150,8 +151,9 @@ Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double colu
 }
 
 struct RayTracer::Spheres {
-	std::vector<Sphere> all;
-	SphereTree          tree;
+	std::vector<Sphere>  all;
+	SphereTree           tree;
+	Eigen::AlignedBox3d  box;
 };
 
 RayTracer::RayTracer(
@@ -173,6 +175,7 @@ RayTracer::RayTracer(
 		const auto& [center, normal, radius] = spheres->all[i];
 		indices[i]                   = i;
 		boxes[i] = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
+		spheres->box.extend(boxes[i]);
 	}
 	if (n > 0)
 		spheres->tree.init(indices.begin(), indices.end(), boxes.begin(), boxes.end());
@@ -187,7 +190,7 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 	if (slot.point != point) {
 		slot.point = point;
 		slot.quadric.reset();
-		if (m_surface.gather(point, slot.around))
+		if (m_surface.gather(point, margin, slot.around))
 			slot.quadric = m_surface.near(slot.around, m_control.cloud.positions.col(point));
 	}
 	return slot;
@@ -196,7 +199,7 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 struct RayTracer::Approach {
 	RayHit hit;
 	double last; // where on the ray the surface was looked for
-	double turn = 1.0; // cosine between the normals there and at the sphere's point
+	bool   doubtful = false; // far from the sphere's point or on another face
 };
 
 RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double start, Memory& memory) const
@@ -227,8 +230,9 @@ RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double star
 		result.last = t;
 		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
 			const Vector3d normal = quadric.normalAt(place);
-			result.turn           = normal.dot(slot.around.side());
-			if (result.turn > opposed && !slot.around.pastEdge(place, normal))
+			const double   turn   = normal.dot(slot.around.side());
+			result.doubtful = turn < doubtful || (place - sphere.center).norm() > sphere.radius;
+			if (turn > opposed && !slot.around.pastEdge(place, normal))
 				result.hit = {t, place, normal};
 			return result;
 		}
@@ -243,7 +247,7 @@ void RayTracer::aim(const Ray& axis, double spread, Memory& memory) const
 	memory.m_spheres.clear();
 	if (m_spheres->all.empty())
 		return;
-	const auto&  box      = m_spheres->tree.getVolume(m_spheres->tree.getRootIndex());
+	const Eigen::AlignedBox3d& box = m_spheres->box;
 	const double farthest = (axis.origin - box.center()).norm() + 0.5 * box.diagonal().norm();
 	SphereCollector collector{
 		m_spheres->all, axis, axis.direction.cwiseInverse(), spread * farthest, memory.m_spheres};
@@ -278,7 +282,7 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 			if (!passages[k].done && passages[k].off < passages[chosen].off)
 				chosen = k;
 		Approach found = approach(ray, passages[chosen].sphere, passages[chosen].start, memory);
-		if (found.hit.exists() && found.turn < doubtful) {
+		if (found.hit.exists() && found.doubtful) {
 			// Near sharp edges neighbourhoods differ: that of the closest point decides.
 			const Index nearest = m_control.search.nearest(found.hit.position, 1).front();
 			if (nearest != passages[chosen].sphere)

@@ -10,6 +10,7 @@
 
 #include "core/curvature_colors.h"
 #include "core/curvature_driven_projection.h"
+#include "core/m_weighted_curvature.h"
 #include "core/moving_least_squares.h"
 #include "core/surface_picture.h"
 

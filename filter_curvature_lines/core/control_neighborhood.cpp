@@ -12,8 +12,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double isolated = 3.0; // spacings
-// Of uneven clouds a ball may hold very few points of the sheet, or very many.
-constexpr Index fewest = 24, most = 240, instead = 60;
+// Points in a ball of one spacing on an even grid. Noise and uneven clouds may put many more into it, or very
+// few of the sheet.
+constexpr double gridPoints = 3.6;
+constexpr double fewest     = 0.4; // of that
 constexpr double farAway = 1e30;
 constexpr double opposing = -0.34; // cosine: the faces of a right angle are one sheet, those of a thin plate two
 
@@ -121,22 +123,21 @@ bool ControlNeighborhood::gather(
 	m_side = normals.col(closest);
 	const auto sameSheet = [&](Index j) { return normals.col(j).dot(m_side) > opposing; };
 	control.search.within(place, radius, m_found);
-	auto  others = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
-	Index limit  = most;
-	if (others - m_found.begin() < fewest) {
-		m_found = control.search.nearest(place, most);
+	auto       others = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
+	const auto enough = static_cast<Index>(gridPoints * reach * reach);
+	if (others - m_found.begin() < fewest * enough) {
+		m_found = control.search.nearest(place, 4 * enough);
 		others  = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
-		limit   = instead;
 	}
 	m_opposing.clear();
 	for (auto j = others; j != m_found.end(); ++j)
 		m_opposing.push_back({positions.col(*j), normals.col(*j)});
 	m_found.erase(others, m_found.end());
-	if (Index(m_found.size()) > limit) {
-		std::nth_element(m_found.begin(), m_found.begin() + instead, m_found.end(), [&](Index i, Index j) {
+	if (Index(m_found.size()) > enough) {
+		std::nth_element(m_found.begin(), m_found.begin() + enough, m_found.end(), [&](Index i, Index j) {
 			return std::make_pair(distance(i), i) < std::make_pair(distance(j), j);
 		});
-		m_found.resize(instead);
+		m_found.resize(enough);
 	}
 
 	m_size   = int(m_found.size());

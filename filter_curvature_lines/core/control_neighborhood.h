@@ -33,7 +33,7 @@ struct PlaneSums {
 class ControlNeighborhood {
 public:
 	// The control points within `reach` local spacings, without those whose normals oppose that of the
-	// closest. False where there is no surface: farther than three spacings from the closest.
+	// closest; the closest of them where they are many. False where there is no surface: farther than three spacings from the closest.
 	bool gather(const ControlPoints& control, const Eigen::Vector3d& place, double reach);
 	// The same around a control point.
 	bool gather(const ControlPoints& control, Index point, double reach);

@@ -64,9 +64,11 @@ std::optional<CurvatureDrivenSurface::Base> CurvatureDrivenSurface::diffuse(
 	double before = 0.0, move = 0.0;
 	for (Index step = 0; step < m_options.diffusionSteps; ++step) {
 		const double height = moveAlong(along, around, base.point, sums);
-		// A secant step once two heights are known: the weights move with the point.
-		const double slope = before - height;
-		move   = step > 0 && slope * move > 0.5 * move * move ? height * move / slope : height;
+		// A secant step once two heights are known: the weights move with the point. Shares jump, and do not
+		// allow it.
+		const double slope  = before - height;
+		const bool   secant = step > 0 && m_options.diffusion == Diffusion::Hermite && slope * move > 0.5 * move * move;
+		move   = secant ? height * move / slope : height;
 		before = height;
 		base.point += move * along;
 		sums = around.normalSums(base.point, h);

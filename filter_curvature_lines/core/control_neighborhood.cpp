@@ -12,8 +12,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double isolated = 3.0; // spacings
-// Points in a ball of one spacing on an even grid. Noise and uneven clouds may put many more into it, or very
-// few of the sheet.
+// Points in a ball of one spacing on an even grid. Noise and uneven clouds may put more into it, or very few of
+// the sheet.
 constexpr double gridPoints = 3.6;
 constexpr double fewest     = 0.4; // of that
 constexpr double farAway = 1e30;
@@ -115,32 +115,34 @@ bool ControlNeighborhood::gather(
 {
 	const Eigen::Matrix3Xd& positions = control.cloud.positions;
 	const Eigen::Matrix3Xd& normals   = control.cloud.normals;
-	const auto              distance  = [&](Index j) { return (positions.col(j) - place).norm(); };
+	const auto squaredDistance = [&](Index j) { return (positions.col(j) - place).squaredNorm(); };
 
-	double radius = reach * control.spacing[closest];
-	if (!(radius > 0.0) || distance(closest) > isolated * control.spacing[closest])
+	const double radius = reach * control.spacing[closest], far = isolated * control.spacing[closest];
+	if (!(radius > 0.0) || squaredDistance(closest) > far * far)
 		return false;
-	m_side = normals.col(closest);
-	const auto sameSheet = [&](Index j) { return normals.col(j).dot(m_side) > opposing; };
+	m_side            = normals.col(closest);
+	const auto enough = static_cast<std::size_t>(gridPoints * reach * reach);
+	const auto split  = [&] {
+		m_near.clear();
+		m_opposing.clear();
+		for (const Index j : m_found)
+			if (normals.col(j).dot(m_side) > opposing)
+				m_near.emplace_back(squaredDistance(j), j);
+			else
+				m_opposing.push_back({positions.col(j), normals.col(j)});
+	};
 	control.search.within(place, radius, m_found);
-	auto       others = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
-	const auto enough = static_cast<Index>(gridPoints * reach * reach);
-	if (others - m_found.begin() < fewest * enough) {
-		m_found = control.search.nearest(place, 4 * enough);
-		others  = std::stable_partition(m_found.begin(), m_found.end(), sameSheet);
+	split();
+	if (double(m_near.size()) < fewest * double(enough)) {
+		m_found = control.search.nearest(place, Index(4 * enough));
+		split();
 	}
-	m_opposing.clear();
-	for (auto j = others; j != m_found.end(); ++j)
-		m_opposing.push_back({positions.col(*j), normals.col(*j)});
-	m_found.erase(others, m_found.end());
-	if (Index(m_found.size()) > enough) {
-		std::nth_element(m_found.begin(), m_found.begin() + enough, m_found.end(), [&](Index i, Index j) {
-			return std::make_pair(distance(i), i) < std::make_pair(distance(j), j);
-		});
-		m_found.resize(enough);
+	if (m_near.size() > enough) {
+		std::nth_element(m_near.begin(), m_near.begin() + enough, m_near.end());
+		m_near.resize(enough);
 	}
 
-	m_size   = int(m_found.size());
+	m_size   = int(m_near.size());
 	m_padded = (m_size + blockSize - 1) / blockSize * blockSize;
 	m_rows.resize(std::size_t(6) * m_padded);
 	for (int r = 0; r < 6; ++r)
@@ -148,13 +150,12 @@ bool ControlNeighborhood::gather(
 	double total = 0.0;
 	m_spacing    = 0.0;
 	for (int k = 0; k < m_size; ++k) {
-		const Index j = m_found[k];
+		const auto [square, j] = m_near[k];
 		for (int c = 0; c < 3; ++c) {
 			m_rows[std::size_t(c) * m_padded + k]     = positions(c, j);
 			m_rows[std::size_t(3 + c) * m_padded + k] = normals(c, j);
 		}
-		const double share = distance(j) / radius;
-		const double w     = std::max(0.05, 1.0 - share * share);
+		const double w = std::max(0.05, 1.0 - square / (radius * radius));
 		m_spacing += w * control.spacing[j];
 		total += w;
 	}

@@ -60,12 +60,13 @@ private:
 	int                 m_size = 0, m_padded = 0;
 	double              m_spacing = 0.0;
 	Eigen::Vector3d     m_side    = Eigen::Vector3d::Zero();
-	std::vector<Index>  m_found;
 
 	struct OrientedPoint {
 		Eigen::Vector3d position, normal;
 	};
 	std::vector<OrientedPoint> m_opposing; // on other sheets
+	std::vector<Index>                    m_found; // scratch of gather(), and of it those of the sheet
+	std::vector<std::pair<double, Index>> m_near;
 };
 
 } // namespace curvature_lines

@@ -83,23 +83,14 @@ std::optional<CurvatureDrivenSurface::Base> CurvatureDrivenSurface::diffuse(
 	return base;
 }
 
-std::optional<LocalQuadric> CurvatureDrivenSurface::near(
-	const ControlNeighborhood& around, const Vector3d& place) const
+// Steps 5 and 6: principal curvatures and directions there. M weights only here.
+std::optional<LocalQuadric> CurvatureDrivenSurface::quadricAt(
+	const ControlNeighborhood& around, const Base& base) const
 {
-	// 1, 2: the quasi-tangent plane (o, l) and the foot q of the place on it.
-	const NormalSums sums = around.normalSums(place, m_options.bandwidth * around.spacing());
-	if (!(sums.weight > 0.0) || !(sums.normal.norm() > 0.0))
-		return std::nullopt;
-	const Vector3d l    = sums.normal.normalized();
-	const auto     base = diffuse(around, place + sums.offset.dot(l) / sums.weight * l);
-	if (!base)
-		return std::nullopt;
-
-	// 5, 6: principal curvatures and directions there. M weights only here.
 	thread_local LocalSamples<1> samples;
-	const TangentFrame           frame(base->normal);
+	const TangentFrame           frame(base.normal);
 	const double                 h = m_options.curvatureBandwidth * around.spacing();
-	around.heights(base->point, frame, h, samples);
+	around.heights(base.point, frame, h, samples);
 	for (int s = 0; s < samples.size(); ++s) {
 		const double square = samples.x[s] * samples.x[s] + samples.y[s] * samples.y[s] +
 			samples.value[0][s] * samples.value[0][s];
@@ -112,14 +103,34 @@ std::optional<LocalQuadric> CurvatureDrivenSurface::near(
 	if (!fit.valid)
 		return std::nullopt;
 	LocalQuadric quadric;
-	quadric.origin = base->point;
+	quadric.origin = base.point;
 	quadric.u      = frame.toSpace(fit.d1);
-	quadric.n      = base->normal;
+	quadric.n      = base.normal;
 	quadric.v      = quadric.n.cross(quadric.u);
 	// T06's curvatures are positive where the surface bends towards the normal, ours where it is convex.
 	quadric.c[3] = -0.5 * fit.k1 / h;
 	quadric.c[5] = -0.5 * fit.k2 / h;
 	return quadric;
+}
+
+std::optional<LocalQuadric> CurvatureDrivenSurface::near(
+	const ControlNeighborhood& around, const Vector3d& place) const
+{
+	// 1, 2: the quasi-tangent plane (o, l) and the foot q of the place on it.
+	const NormalSums sums = around.normalSums(place, m_options.bandwidth * around.spacing());
+	if (!(sums.weight > 0.0) || !(sums.normal.norm() > 0.0))
+		return std::nullopt;
+	const Vector3d l    = sums.normal.normalized();
+	const auto     base = diffuse(around, place + sums.offset.dot(l) / sums.weight * l);
+	if (!base)
+		return std::nullopt;
+	return quadricAt(around, *base);
+}
+
+std::optional<LocalQuadric> CurvatureDrivenSurface::roughlyAt(
+	const ControlNeighborhood& around, const Vector3d& place) const
+{
+	return quadricAt(around, {place, around.side()});
 }
 
 bool CurvatureDrivenSurface::follow(

@@ -31,6 +31,9 @@ public:
 	// directions; k1 and k2 are T06's here, positive where the surface bends towards the normal.
 	std::optional<LocalQuadric> near(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place) const override;
+	// Steps 5 and 6 alone, as if the control point were on the surface.
+	std::optional<LocalQuadric> roughlyAt(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place) const override;
 	// One step of 3 and 4 alone: curvature moves points towards the surface, it does not say where it is.
 	bool follow(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const override;
@@ -43,6 +46,7 @@ private:
 	double moveAlong(
 		const Eigen::Vector3d& normal,
 		const ControlNeighborhood& around, const Eigen::Vector3d& point, const NormalSums& sums) const;
+	std::optional<LocalQuadric> quadricAt(const ControlNeighborhood& around, const Base& base) const;
 
 	CurvatureDrivenOptions m_options;
 };

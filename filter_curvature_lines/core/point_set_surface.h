@@ -52,7 +52,13 @@ public:
 	// Nothing where the points around do not tell.
 	virtual std::optional<LocalQuadric> near(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place) const = 0;
-	// The same for a place less than a spacing away from that of `quadric`, which is replaced: what may be kept
+	// A first approximation at the control point that `around` was gathered for: near(), or quicker.
+	virtual std::optional<LocalQuadric> roughlyAt(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place) const
+	{
+		return near(around, place);
+	}
+	// The same as near() for a place less than a spacing away from that of `quadric`, which is replaced: what may be kept
 	// of it saves time. False where the points around do not tell.
 	virtual bool follow(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const = 0;

@@ -191,7 +191,7 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 		slot.point = point;
 		slot.quadric.reset();
 		if (m_surface.gather(point, margin, slot.around))
-			slot.quadric = m_surface.near(slot.around, m_control.cloud.positions.col(point));
+			slot.quadric = m_surface.roughlyAt(slot.around, m_control.cloud.positions.col(point));
 	}
 	return slot;
 }

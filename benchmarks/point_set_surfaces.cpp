@@ -13,6 +13,7 @@
 #include "core/m_weighted_curvature.h"
 #include "core/moving_least_squares.h"
 #include "core/ray_tracing.h"
+#include "core/spatial_order.h"
 
 #include "peers/cloud_file.h"
 
@@ -38,7 +39,7 @@ int compare(const char* file, int width, int height, int runs)
 			positions(c, i) = given.points[i][c];
 			normals(c, i)   = given.points[i][3 + c];
 		}
-	const PreparedCloud             prepared = prepareCloud(positions, normals);
+	const PreparedCloud             prepared = inSpatialOrder(prepareCloud(positions, normals));
 	const NeighborSearch            search(prepared.cloud.positions);
 	const MinimumNeighborhoods      minimum = minimumNeighborhoods(prepared.cloud, search);
 	const ControlPoints             control{prepared.cloud, search, minimum.spacing};

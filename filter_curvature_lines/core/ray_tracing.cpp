@@ -50,12 +50,11 @@ struct SphereCollector {
 	{
 		double first = 0.0, last = std::numeric_limits<double>::infinity();
 		for (int c = 0; c < 3; ++c) {
-			double a = (box.min()[c] - distance - ray.origin[c]) * inverse[c];
-			double b = (box.max()[c] + distance - ray.origin[c]) * inverse[c];
-			if (a > b)
-				std::swap(a, b);
-			first = a > first ? a : first; // not std::max: of 0 * infinity nothing follows
-			last  = b < last ? b : last;
+			const double a    = (box.min()[c] - distance - ray.origin[c]) * inverse[c];
+			const double b    = (box.max()[c] + distance - ray.origin[c]) * inverse[c];
+			const double near = a < b ? a : b, far = a < b ? b : a;
+			first = near > first ? near : first; // not std::max: of 0 * infinity nothing follows
+			last  = far < last ? far : last;
 		}
 		return first <= last;
 	}

@@ -18,7 +18,7 @@ constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no sur
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
 constexpr double margin  = 0.5;  // spacings: most places are that close to the point of their sphere
 constexpr double strayed = 1.8; // radii: so far from a sphere's centre others know the surface better
-constexpr double behind = 2.4;  // radii: so close behind a front that was missed, a back is an artefact
+constexpr double behind = 5.0;  // radii: so close behind a front that was missed, a back is an artefact
 constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
 constexpr int    tile = 16, beam = 4;  // pixels: whose rays share neighbourhoods, and spheres
 

@@ -21,8 +21,8 @@ TRACED = (1066, 800)
 VIEWS = {FANDISK: ((-0.6, 0.5, 1.0), (0.0, 1.0, 0.0)), TWELVE: ((0.4, 0.3, 1.0), (0.0, 1.0, 0.0))}
 
 
-def write_strips(name: str, rows: list[list[Path]], width: int) -> None:
-    """Rows of pictures of one size as one picture, in few enough colours to stay small."""
+def write_strips(name: str, rows: list[list[Path]], width: int, few_colors: bool = True) -> None:
+    """Rows of pictures of one size as one picture, in few enough colours to stay small unless these would show."""
     pictures = [[Image.open(path).convert("RGB") for path in row] for row in rows]
     across, down = pictures[0][0].size
     sheet = Image.new("RGB", (across * len(pictures[0]), down * len(pictures)), "white")
@@ -30,7 +30,9 @@ def write_strips(name: str, rows: list[list[Path]], width: int) -> None:
         for place, picture in enumerate(row):
             sheet.paste(picture, (across * place, down * line))
     sheet = sheet.resize((width, width * sheet.height // sheet.width), Image.Resampling.LANCZOS)
-    sheet.quantize(200, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(DOCS / f"{name}.png", optimize=True)
+    if few_colors:
+        sheet = sheet.quantize(200, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    sheet.save(DOCS / f"{name}.png", optimize=True)
 
 
 def pipeline() -> None:
@@ -115,7 +117,9 @@ def gallery(folder: Path, topics: list[str]) -> None:
     if "meshes" in topics:
         write_strips("gallery_meshes", [cleaning(folder / name) for name in (FANDISK, TWELVE)], 1200)
     if "ray_tracing" in topics:
-        write_strips("gallery_ray_tracing", [ray_traced(folder / name) for name in (FANDISK_CLEAN, BUNNY, DRAGON)], 1400)
+        shapes = [ray_traced(folder / name) for name in (FANDISK_CLEAN, BUNNY, DRAGON)]
+        columns = [list(column) for column in zip(*shapes, strict=True)]
+        write_strips("gallery_ray_tracing", columns, 1500, few_colors=False)
     if "curvature" in topics:
         write_strips("gallery_curvature", [[curvature(folder / name) for name in (RANGE_MAP, ANGEL, DRAGON)]], 1600)
 

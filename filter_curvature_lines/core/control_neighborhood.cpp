@@ -16,15 +16,16 @@ constexpr double isolated = 3.0; // spacings
 // the sheet.
 constexpr double gridPoints = 3.6;
 constexpr double fewest     = 0.4; // of that
-constexpr double farAway = 1e30;
-constexpr double opposing = -0.34; // cosine: the faces of a right angle are one sheet, those of a thin plate two
+constexpr double farAway    = 1e30;
+constexpr double opposing   = -0.34; // cosine: faces at a right angle are one sheet, those of a thin plate two
 
 // Offsets of four points from a place, and their Gaussian weights.
 struct Offsets {
 	Block x, y, z, weight;
 };
 
-inline void offsetsAt(const double* rows, int padded, int s, const Vector3d& place, double sharpness, Offsets& d)
+inline void offsetsAt(
+	const double* rows, int padded, int s, const Vector3d& place, double sharpness, Offsets& d)
 {
 	d.x      = blockAt(rows + s) - place.x();
 	d.y      = blockAt(rows + padded + s) - place.y();
@@ -40,7 +41,8 @@ CURVATURE_LINES_AVX2_CLONE void addUp(
 	for (int s = 0; s < padded; s += blockSize) {
 		Offsets d;
 		offsetsAt(rows, padded, s, place, sharpness, d);
-		const Block nx = blockAt(rows + 3 * padded + s), ny = blockAt(rows + 4 * padded + s), nz = blockAt(rows + 5 * padded + s);
+		const Block nx = blockAt(rows + 3 * padded + s), ny = blockAt(rows + 4 * padded + s),
+					nz = blockAt(rows + 5 * padded + s);
 		const Block w = d.weight;
 		weight += w;
 		offset[0] += w * d.x;
@@ -83,7 +85,12 @@ CURVATURE_LINES_AVX2_CLONE void addUp(
 }
 
 CURVATURE_LINES_AVX2_CLONE void project(
-	const double* rows, int padded, const Vector3d& place, const TangentFrame& frame, double h, LocalSamples<1>& samples)
+	const double*       rows,
+	int                 padded,
+	const Vector3d&     place,
+	const TangentFrame& frame,
+	double              h,
+	LocalSamples<1>&    samples)
 {
 	const Vector3d u = frame.u / h, v = frame.v / h, n = frame.n / h;
 	for (int s = 0; s < padded; s += blockSize) {
@@ -179,7 +186,7 @@ PlaneSums ControlNeighborhood::planeSums(const Vector3d& place, double h) const
 
 bool ControlNeighborhood::pastEdge(const Vector3d& place, const Vector3d& normal) const
 {
-	double       closest = std::numeric_limits<double>::infinity(), above = 0.0;
+	double closest = std::numeric_limits<double>::infinity(), above = 0.0;
 	for (const OrientedPoint& other : m_opposing) {
 		const Vector3d d = place - other.position;
 		// Sheets in front are those across a gap.

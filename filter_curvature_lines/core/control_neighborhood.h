@@ -33,12 +33,13 @@ struct PlaneSums {
 class ControlNeighborhood {
 public:
 	// The control points within `reach` local spacings, without those whose normals oppose that of the
-	// closest; the closest of them where they are many. False where there is no surface: farther than three spacings from the closest.
+	// closest; where they are many, the closest of them. False where there is no surface: farther than three
+	// spacings from the closest.
 	bool gather(const ControlPoints& control, const Eigen::Vector3d& place, double reach);
 	// The same around a control point.
 	bool gather(const ControlPoints& control, Index point, double reach);
 
-	double                 spacing() const { return m_spacing; } // around: changes gradually from place to place
+	double                 spacing() const { return m_spacing; } // around, length: changes gradually
 	const Eigen::Vector3d& side() const { return m_side; }       // normal of the closest point
 	int                    size() const { return m_size; }
 	Eigen::Vector3d        position(int k) const { return {row(0)[k], row(1)[k], row(2)[k]}; }
@@ -53,20 +54,21 @@ public:
 		const Eigen::Vector3d& place, const TangentFrame& frame, double h, LocalSamples<1>& samples) const;
 
 private:
-	bool gather(const ControlPoints& control, const Eigen::Vector3d& place, Index closest, double reach);
+	struct OrientedPoint {
+		Eigen::Vector3d position, normal;
+	};
+
+	bool gather(
+		const ControlPoints& control, const Eigen::Vector3d& place, Index closest, double reach);
 	const double* row(int r) const { return m_rows.data() + std::size_t(r) * m_padded; }
 
 	std::vector<double> m_rows; // x, y, z and the normals' components; padded with points far away
 	int                 m_size = 0, m_padded = 0;
 	double              m_spacing = 0.0;
 	Eigen::Vector3d     m_side    = Eigen::Vector3d::Zero();
-
-	struct OrientedPoint {
-		Eigen::Vector3d position, normal;
-	};
-	std::vector<OrientedPoint> m_opposing; // on other sheets
-	std::vector<Index>                    m_found; // scratch of gather(), and of it those of the sheet
-	std::vector<std::pair<double, Index>> m_near;
+	std::vector<OrientedPoint>            m_opposing; // around, on other sheets
+	std::vector<Index>                    m_found;    // scratch of gather()
+	std::vector<std::pair<double, Index>> m_near;     // likewise: squared distances, points of the sheet
 };
 
 } // namespace curvature_lines

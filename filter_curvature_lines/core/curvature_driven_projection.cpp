@@ -16,13 +16,14 @@ namespace {
 using Eigen::Vector3d;
 using Diffusion = CurvatureDrivenOptions::Diffusion;
 
-constexpr double gaussianReach = 2.0;  // bandwidths: beyond, weights are below a fiftieth
-constexpr double curvatureReach = 1.6; // bandwidths: M weights are largest at the root of xi
+constexpr double gaussianReach  = 2.0;  // bandwidths: beyond, weights are below a fiftieth
+constexpr double curvatureReach = 1.6;  // bandwidths: M weights are largest at the root of xi
 constexpr double settled        = 1e-3; // spacings: what diffusion moves at last
 
 } // namespace
 
-CurvatureDrivenSurface::CurvatureDrivenSurface(const ControlPoints& control, const CurvatureDrivenOptions& options) :
+CurvatureDrivenSurface::CurvatureDrivenSurface(
+	const ControlPoints& control, const CurvatureDrivenOptions& options) :
 		PointSetSurface(
 			control,
 			std::max(gaussianReach * options.bandwidth, curvatureReach * options.curvatureBandwidth)),
@@ -30,9 +31,11 @@ CurvatureDrivenSurface::CurvatureDrivenSurface(const ControlPoints& control, con
 {
 }
 
-// How far the neighbours say the surface lies above a point.
-double CurvatureDrivenSurface::moveAlong(
-	const Vector3d& normal, const ControlNeighborhood& around, const Vector3d& point, const NormalSums& sums) const
+double CurvatureDrivenSurface::heightAlong(
+	const Vector3d&            normal,
+	const ControlNeighborhood& around,
+	const Vector3d&            point,
+	const NormalSums&          sums) const
 {
 	if (m_options.diffusion == Diffusion::Hermite)
 		return 0.5 * (sums.offset.dot(normal) + sums.plane) / sums.weight;
@@ -60,14 +63,15 @@ std::optional<CurvatureDrivenSurface::Base> CurvatureDrivenSurface::diffuse(
 	NormalSums   sums = around.normalSums(from, h);
 	if (!(sums.weight > 0.0) || !(sums.normal.norm() > 0.0))
 		return std::nullopt;
-	const Vector3d along = sums.normal.normalized();
-	double before = 0.0, move = 0.0;
+	const Vector3d along  = sums.normal.normalized();
+	double         before = 0.0, move = 0.0;
 	for (Index step = 0; step < m_options.diffusionSteps; ++step) {
-		const double height = moveAlong(along, around, base.point, sums);
+		const double height = heightAlong(along, around, base.point, sums);
 		// A secant step once two heights are known: the weights move with the point. Shares jump, and do not
 		// allow it.
 		const double slope  = before - height;
-		const bool   secant = step > 0 && m_options.diffusion == Diffusion::Hermite && slope * move > 0.5 * move * move;
+		const bool   secant = step > 0 && m_options.diffusion == Diffusion::Hermite &&
+			slope * move > 0.5 * move * move;
 		move   = secant ? height * move / slope : height;
 		before = height;
 		base.point += move * along;
@@ -140,7 +144,7 @@ bool CurvatureDrivenSurface::follow(
 	if (!(sums.weight > 0.0) || !(sums.normal.norm() > 0.0))
 		return false;
 	quadric.n      = sums.normal.normalized();
-	quadric.origin = place + moveAlong(quadric.n, around, place, sums) * quadric.n;
+	quadric.origin = place + heightAlong(quadric.n, around, place, sums) * quadric.n;
 	quadric.u      = (quadric.u - quadric.u.dot(quadric.n) * quadric.n).normalized();
 	quadric.v      = quadric.n.cross(quadric.u);
 	return true;

@@ -43,9 +43,12 @@ private:
 		Eigen::Vector3d point, normal;
 	};
 	std::optional<Base> diffuse(const ControlNeighborhood& around, const Eigen::Vector3d& from) const;
-	double moveAlong(
-		const Eigen::Vector3d& normal,
-		const ControlNeighborhood& around, const Eigen::Vector3d& point, const NormalSums& sums) const;
+	// How far above a point the neighbours say the surface is; `sums` are those there.
+	double heightAlong(
+		const Eigen::Vector3d&     normal,
+		const ControlNeighborhood& around,
+		const Eigen::Vector3d&     point,
+		const NormalSums&          sums) const;
 	std::optional<LocalQuadric> quadricAt(const ControlNeighborhood& around, const Base& base) const;
 
 	CurvatureDrivenOptions m_options;

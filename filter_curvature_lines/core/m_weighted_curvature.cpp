@@ -76,24 +76,6 @@ double gaussianWeight(double x, double h)
 	return std::exp(-x * x / (h * h));
 }
 
-double squaredWeight(double x, double h, const MWeightedCurvatureOptions& options)
-{
-	double w = 1.0;
-	switch (options.weighting) {
-	case MWeightedCurvatureOptions::Weighting::M: {
-		const double peak = std::sqrt(double(options.exponent));
-		w = mWeight(x / h, 1.0, options.exponent) / mWeight(peak, 1.0, options.exponent);
-		break;
-	}
-	case MWeightedCurvatureOptions::Weighting::Gaussian:
-		w = gaussianWeight(x, h);
-		break;
-	case MWeightedCurvatureOptions::Weighting::Unweighted:
-		break;
-	}
-	return w < smallestShare ? 0.0 : w * w;
-}
-
 EulerFit fitEuler(LocalSamples<1>& samples)
 {
 	EulerSums sums;
@@ -115,7 +97,9 @@ EulerFit fitEuler(LocalSamples<1>& samples)
 	fit.k2                     = v[0] - half;
 	// d1 lies where the cosine and sine of twice its angle are v2 and v3, over (k1 - k2) / 2.
 	const double cosine = half > 0.0 ? v[1] / half : 1.0, sine = half > 0.0 ? v[2] / half : 0.0;
-	fit.d1 = {std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)), std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), sine)};
+	fit.d1 = {
+		std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)),
+		std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), sine)};
 
 	const Eigen::Matrix3d covariance = inverse * sums.spread * inverse;
 	const double          freedom    = total * (1.0 - 3.0 / sums.count);
@@ -125,6 +109,29 @@ EulerFit fitEuler(LocalSamples<1>& samples)
 	fit.valid = std::isfinite(fit.k1) && std::isfinite(fit.k2) && std::isfinite(fit.error);
 	return fit;
 }
+
+namespace {
+
+// w^2 relative to its peak; 0 where w is below a thousandth of it (T06 section 6).
+double squaredWeight(double x, double h, const MWeightedCurvatureOptions& options)
+{
+	double w = 1.0;
+	switch (options.weighting) {
+	case MWeightedCurvatureOptions::Weighting::M: {
+		const double peak = std::sqrt(double(options.exponent));
+		w = mWeight(x / h, 1.0, options.exponent) / mWeight(peak, 1.0, options.exponent);
+		break;
+	}
+	case MWeightedCurvatureOptions::Weighting::Gaussian:
+		w = gaussianWeight(x, h);
+		break;
+	case MWeightedCurvatureOptions::Weighting::Unweighted:
+		break;
+	}
+	return w < smallestShare ? 0.0 : w * w;
+}
+
+} // namespace
 
 CurvatureField mWeightedCurvature(
 	const PointCloud&                cloud,

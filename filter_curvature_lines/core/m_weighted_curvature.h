@@ -21,8 +21,6 @@ struct MWeightedCurvatureOptions {
 // power. Each equation of the least squares is weighted by w^2.
 double mWeight(double x, double h, Index exponent);
 double gaussianWeight(double x, double h);
-// w^2 relative to its peak; 0 where w is below a thousandth of it (T06 section 6).
-double squaredWeight(double x, double h, const MWeightedCurvatureOptions& options);
 
 // The least squares of T06 eq. 11 at one place: directional curvatures k(phi) = v1 + v2 cos 2 phi + v3 sin 2 phi.
 struct EulerFit {

@@ -58,8 +58,8 @@ public:
 	{
 		return near(around, place);
 	}
-	// The same as near() for a place less than a spacing away from that of `quadric`, which is replaced: what may be kept
-	// of it saves time. False where the points around do not tell.
+	// The same as near() for a place less than a spacing away from that of `quadric`, which is replaced: what
+	// may be kept of it saves time. False where the points around do not tell.
 	virtual bool follow(
 		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const = 0;
 

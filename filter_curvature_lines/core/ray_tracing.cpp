@@ -13,14 +13,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  sphereNeighbor = 6;   // as far as that from its point a sphere reaches
-constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no surface
+constexpr Index  sphereNeighbor = 6;    // as far as that from its point a sphere reaches
+constexpr double largestSphere  = 3.0;  // spacings: lonely points enclose no surface
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
-constexpr double margin  = 0.5;  // spacings: most places are that close to the point of their sphere
-constexpr double strayed = 1.8; // radii: so far from a sphere's centre others know the surface better
-constexpr double behind = 5.0;  // radii: so close behind a front that was missed, a back is an artefact
-constexpr double doubtful = 0.9, opposed = 0.3; // cosines between normals of a hit and of its sphere's point
-constexpr int    tile = 16, beam = 4;  // pixels: whose rays share neighbourhoods, and spheres
+constexpr double margin         = 0.5;  // spacings: most places are that close to the point of their sphere
+constexpr double strayed        = 1.8;  // radii: so far from a sphere's centre others know the surface better
+constexpr double behind         = 5.0;  // radii: so close behind a front that was missed, a back is an artefact
+// Cosines between the normals of a hit and of its sphere's point: another sphere has to confirm it; no hit.
+constexpr double turned = 0.9, opposed = 0.3;
+constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
 	Vector3d center, normal;
@@ -33,7 +34,7 @@ using SphereTree = Eigen::KdBVH<double, 3, Index>;
 struct Passage {
 	double start;   // where on the ray the surface is likely: at the plane of the sphere's point
 	double closest; // to the sphere's centre
-	double off;     // square of how far the plane is met from the centre; larger than all these where it is not met
+	double off;     // squared distance from the centre to where the plane is met; larger than all where it is not
 	Index  sphere;
 	bool   done;
 };
@@ -73,8 +74,8 @@ void addPassage(const Ray& ray, const Sphere& sphere, Index index, std::vector<P
 {
 	const Vector3d d       = sphere.center - ray.origin;
 	const double   closest = d.dot(ray.direction);
-	const double   whole = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
-	const double   square = whole - aside; // of half the passage
+	const double   whole   = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
+	const double   square  = whole - aside; // of half the passage
 	if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
 		return;
 	const double slope  = ray.direction.dot(sphere.normal);
@@ -150,9 +151,9 @@ Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double colu
 }
 
 struct RayTracer::Spheres {
-	std::vector<Sphere>  all;
-	SphereTree           tree;
-	Eigen::AlignedBox3d  box;
+	std::vector<Sphere> all;
+	SphereTree          tree;
+	Eigen::AlignedBox3d box;
 };
 
 RayTracer::RayTracer(
@@ -166,14 +167,15 @@ RayTracer::RayTracer(
 		const Vector3d center = control.cloud.positions.col(i);
 		const auto     near   = control.search.nearest(center, sphereNeighbor + 1);
 		const double   radius = (control.cloud.positions.col(near.back()) - center).norm();
-		spheres->all[i]       = {center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
+		spheres->all[i]       = {
+            center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
 	});
-	std::vector<Index>             indices(n);
+	std::vector<Index>              indices(n);
 	std::vector<SphereTree::Volume> boxes(n);
 	for (Index i = 0; i < n; ++i) {
 		const auto& [center, normal, radius] = spheres->all[i];
-		indices[i]                   = i;
-		boxes[i] = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
+		indices[i] = i;
+		boxes[i]   = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
 		spheres->box.extend(boxes[i]);
 	}
 	if (n > 0)
@@ -197,32 +199,32 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 
 struct RayTracer::Approach {
 	RayHit hit;
-	double last; // where on the ray the surface was looked for
+	double last;             // where on the ray the surface was looked for
 	bool   doubtful = false; // far from the sphere's point or on another face
 };
 
 RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double start, Memory& memory) const
 {
-	Approach                   result{{}, start};
-	const Sphere&              sphere = m_spheres->all[point];
-	const Memory::Slot&        slot   = surfaceAt(point, memory);
+	Approach            result{{}, start};
+	const Sphere&       sphere = m_spheres->all[point];
+	const Memory::Slot& slot   = surfaceAt(point, memory);
 	if (!slot.quadric)
 		return result;
-	LocalQuadric quadric = *slot.quadric;
-	double       t       = start;
-	Vector3d     place   = ray.origin + t * ray.direction;
-	bool         found   = true;
+	LocalQuadric quadric  = *slot.quadric;
+	double       t        = start;
+	Vector3d     place    = ray.origin + t * ray.direction;
+	bool         found    = true;
 	double       lastStep = 0.0, lastMove = 0.0;
 	for (int it = 0; it < m_options.maxIterations; ++it) {
 		const bool   before = found;
 		const double step   = stepToQuadric(quadric, place, ray.direction, found);
-		// From the second quadric on, a secant step: where the surface bends more than they know, plain steps
+		// From the third quadric on, a secant step: where the surface bends more than they know, plain steps
 		// go to and fro.
 		const double change = lastStep - step;
 		lastMove = it > 1 && change * lastMove > 0.25 * lastMove * lastMove ? step * lastMove / change : step;
 		lastStep = step;
 		t += lastMove;
-		place       = ray.origin + t * ray.direction;
+		place = ray.origin + t * ray.direction;
 		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
 		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius || !(t > 0.0))
 			return result;
@@ -230,7 +232,7 @@ RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double star
 		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
 			const Vector3d normal = quadric.normalAt(place);
 			const double   turn   = normal.dot(slot.around.side());
-			result.doubtful = turn < doubtful || (place - sphere.center).norm() > sphere.radius;
+			result.doubtful       = turn < turned || (place - sphere.center).norm() > sphere.radius;
 			if (turn > opposed && !slot.around.pastEdge(place, normal))
 				result.hit = {t, place, normal};
 			return result;
@@ -297,16 +299,22 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 			best = found.hit;
 		// Spheres about there would find the same.
 		passages[first].done = passages[chosen].done = true;
+		const double alike = found.hit.exists() ? 1.0 : 0.5; // radii
 		for (Passage& passage : passages)
-			if (std::abs(passage.closest - found.last) < (found.hit.exists() ? 1.0 : 0.5) * m_spheres->all[passage.sphere].radius)
+			if (std::abs(passage.closest - found.last) < alike * m_spheres->all[passage.sphere].radius)
 				passage.done = true;
 	}
 	return best;
 }
 
 void aimAt(
-	const RayTracer& tracer, const Camera& camera, const RayTracingOptions& image,
-	double column, double row, double size, RayTracer::Memory& memory)
+	const RayTracer&         tracer,
+	const Camera&            camera,
+	const RayTracingOptions& image,
+	double                   column,
+	double                   row,
+	double                   size,
+	RayTracer::Memory&       memory)
 {
 	const Ray axis   = rayThrough(camera, image, column, row);
 	double    spread = 0.0;

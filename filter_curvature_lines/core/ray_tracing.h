@@ -43,7 +43,7 @@ public:
 	RayTracer(const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options);
 	~RayTracer();
 
-	// What rays next to each other share; changes no result. One per thread.
+	// What rays next to each other share; changes no result. For one tracer and one thread.
 	class Memory {
 		friend class RayTracer;
 		struct Slot {
@@ -52,7 +52,7 @@ public:
 			std::optional<LocalQuadric> quadric; // at the point; none where there is no surface
 		};
 		std::vector<Slot>  m_slots = std::vector<Slot>(256);
-		std::vector<Index> m_spheres; // that rays of the beam may pass
+		std::vector<Index> m_spheres; // those that rays of the beam may pass
 	};
 
 	// Prepares for rays from one origin whose directions differ from that of the axis by `spread` (tangent) at
@@ -77,8 +77,13 @@ private:
 Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double column, double row);
 // For the rays through a square of pixels, `size` wide, about a place of the image.
 void aimAt(
-	const RayTracer& tracer, const Camera& camera, const RayTracingOptions& image,
-	double column, double row, double size, RayTracer::Memory& memory);
+	const RayTracer&         tracer,
+	const Camera&            camera,
+	const RayTracingOptions& image,
+	double                   column,
+	double                   row,
+	double                   size,
+	RayTracer::Memory&       memory);
 
 // width x height hits, row by row, through the middles of the pixels.
 std::vector<RayHit> traceImage(

@@ -192,6 +192,9 @@ def images(settings: Settings) -> str:
         "half of the time. Other work may have run on the machine: trust the ratios more than the seconds. Preparation "
         "(neighbourhoods, spheres), the same for both, is not in them; colours and the smoothing of outlines neither.\n\n"
         + measures.markdown_table(header, rows)
+        + "\nBoth surfaces share what finds and gathers the points around a ray. Where a point covers many pixels that is "
+        "done once for many rays, and what is left differs; of the dragon, whose points are as dense as the pixels, nearly "
+        "every ray meets a point of its own, and gathering its neighbours is most of the work of both.\n"
     )
 
 

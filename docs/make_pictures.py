@@ -16,11 +16,13 @@ DOCS, OUT = CHECKOUT / "docs", CHECKOUT / "out"
 PANEL = (900, 780)
 RANGE_MAP, ANGEL, DRAGON = "meshlab_lato270_rawscan.ply", "angel_rawscan.obj", "dragon_vrip.ply"
 FANDISK, TWELVE = "fandisk_noise0.3.obj", "twelve_impulsive0.5.obj"
+FANDISK_CLEAN, BUNNY = "fandisk_clean.obj", "bunny_oriented.ply"
+TRACED = (1066, 800)
 VIEWS = {FANDISK: ((-0.6, 0.5, 1.0), (0.0, 1.0, 0.0)), TWELVE: ((0.4, 0.3, 1.0), (0.0, 1.0, 0.0))}
 
 
-def write_strips(name: str, rows: list[list[Path]], width: int) -> None:
-    """Rows of pictures of one size as one picture, in few enough colours to stay small."""
+def write_strips(name: str, rows: list[list[Path]], width: int, few_colors: bool = True) -> None:
+    """Rows of pictures of one size as one picture, in few enough colours to stay small unless these would show."""
     pictures = [[Image.open(path).convert("RGB") for path in row] for row in rows]
     across, down = pictures[0][0].size
     sheet = Image.new("RGB", (across * len(pictures[0]), down * len(pictures)), "white")
@@ -28,7 +30,9 @@ def write_strips(name: str, rows: list[list[Path]], width: int) -> None:
         for place, picture in enumerate(row):
             sheet.paste(picture, (across * place, down * line))
     sheet = sheet.resize((width, width * sheet.height // sheet.width), Image.Resampling.LANCZOS)
-    sheet.quantize(200, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(DOCS / f"{name}.png", optimize=True)
+    if few_colors:
+        sheet = sheet.quantize(200, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    sheet.save(DOCS / f"{name}.png", optimize=True)
 
 
 def pipeline() -> None:
@@ -89,18 +93,39 @@ def curvature(path: Path) -> Path:
     return picture
 
 
+def ray_traced(path: Path) -> list[Path]:
+    """The surface between the points alone: plain, and by its curvature."""
+    meshes = loaded(path) if path.name != BUNNY else pymeshlab.MeshSet()
+    if path.name == BUNNY:  # comes as points with normals
+        meshes.load_new_mesh(str(path))
+    forget_triangles(meshes)
+    pictures = []
+    for color in ("Plain", "Curvature"):
+        picture = OUT / f"{path.stem}_{color.lower()}.png"
+        report = meshes.save_ray_traced_point_set_image(
+            image_file=str(picture), width=TRACED[0], height=TRACED[1], color_by=color
+        )
+        print(f"{path.name}, {color}: {report['hits']} pixels in {report['seconds_total']:.1f} s")
+        pictures.append(picture)
+    return pictures
+
+
 def gallery(folder: Path, topics: list[str]) -> None:
     OUT.mkdir(exist_ok=True)
     if "scans" in topics:
         write_strips("gallery_scans", [cleaning(folder / name) for name in (RANGE_MAP, ANGEL)], 1400)
     if "meshes" in topics:
         write_strips("gallery_meshes", [cleaning(folder / name) for name in (FANDISK, TWELVE)], 1200)
+    if "ray_tracing" in topics:
+        shapes = [ray_traced(folder / name) for name in (FANDISK_CLEAN, BUNNY, DRAGON)]
+        columns = [list(column) for column in zip(*shapes, strict=True)]
+        write_strips("gallery_ray_tracing", columns, 1500, few_colors=False)
     if "curvature" in topics:
         write_strips("gallery_curvature", [[curvature(folder / name) for name in (RANGE_MAP, ANGEL, DRAGON)]], 1600)
 
 
 def main() -> None:
-    topics = ["scans", "meshes", "curvature"]
+    topics = ["scans", "meshes", "curvature", "ray_tracing"]
     parser = argparse.ArgumentParser(description=__doc__)
     kinds = parser.add_subparsers(dest="kind", required=True)
     kinds.add_parser("pipeline", help="from what scripts/demo.sh left in out/")

@@ -27,16 +27,21 @@ def cgal_version() -> str:
     return subprocess.run([_built() / "cgal_jets", "--version"], capture_output=True, text=True, check=True).stdout.strip()
 
 
+def write_cloud(path: Path, positions: np.ndarray, normals: np.ndarray, points: np.ndarray = NO_POINTS) -> None:
+    """As cloud_file.h reads it."""
+    with path.open("wb") as file:
+        np.array([len(positions), len(points)], dtype=np.int64).tofile(file)
+        np.hstack([positions, normals]).astype(np.float64).tofile(file)
+        points.astype(np.int64).tofile(file)
+
+
 def run_program(
     words: list[str], positions: np.ndarray, normals: np.ndarray, numbers: list[float], points: np.ndarray = NO_POINTS
 ) -> tuple[bytes, float]:
     """What a program (``words``: its name and what comes before the files) writes about a cloud, and says of its time."""
     with tempfile.TemporaryDirectory() as folder:
         cloud, results = Path(folder) / "cloud.bin", Path(folder) / "results.bin"
-        with cloud.open("wb") as file:
-            np.array([len(positions), len(points)], dtype=np.int64).tofile(file)
-            np.hstack([positions, normals]).astype(np.float64).tofile(file)
-            points.astype(np.int64).tofile(file)
+        write_cloud(cloud, positions, normals, points)
         command = [_built() / words[0], *words[1:], cloud, results, *map(str, numbers)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         return results.read_bytes(), float(done.stdout)

@@ -13,7 +13,56 @@ namespace {
 
 // Points whose w is below this share of its peak do not count (T06 section 6, value unpublished).
 constexpr double smallestShare = 1e-3;
-constexpr Index  fewestDirections = 4; // one more than unknowns
+constexpr double fewestDirections = 4.0; // one more than unknowns
+
+// Of rows (1, cos 2 phi, sin 2 phi).
+struct EulerSums {
+	Eigen::Matrix3d normal; // sum w row row^T
+	Eigen::Matrix3d spread; // sum w^2 row row^T: for the error
+	Eigen::Vector3d rhs;    // sum w k row
+	double          squares = 0.0; // sum w k^2
+	double          count   = 0.0; // of weights that are not 0
+};
+
+CURVATURE_LINES_AVX2_CLONE void addUp(const LocalSamples<1>& samples, int padded, EulerSums& sums)
+{
+	Block n1 = {}, nc = {}, ns = {}, ncc = {}, ncs = {}, q1 = {}, qc = {}, qs = {}, qcc = {}, qcs = {};
+	Block r1 = {}, rc = {}, rs = {}, squares = {}, count = {};
+	for (int s = 0; s < padded; s += blockSize) {
+		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]), z = blockAt(&samples.value[0][s]);
+		const Block xx = x * x, yy = y * y, square = xx + yy;
+		const Block w       = square > 0.0 ? Block(blockAt(&samples.weight[s])) : Block {};
+		const Block inverse = 1.0 / (square > 0.0 ? square : square + 1.0);
+		const Block c = (xx - yy) * inverse, si = 2.0 * x * y * inverse; // of twice the angle
+		const Block k = -2.0 * z / (square > 0.0 ? square + z * z : square + 1.0); // T06 eq. 6, the sign ours
+		const Block wc = w * c, ws = w * si, wk = w * k, ww = w * w, wwc = ww * c;
+		n1 += w;
+		nc += wc;
+		ns += ws;
+		ncc += wc * c;
+		ncs += wc * si;
+		q1 += ww;
+		qc += wwc;
+		qs += ww * si;
+		qcc += wwc * c;
+		qcs += wwc * si;
+		r1 += wk;
+		rc += wk * c;
+		rs += wk * si;
+		squares += wk * k;
+		count += w > 0.0 ? Block {} + 1.0 : Block {};
+	}
+	const auto symmetric = [](double one, double c, double s, double cc, double cs) {
+		Eigen::Matrix3d m;
+		m << one, c, s, c, cc, cs, s, cs, one - cc; // cos^2 + sin^2 = 1
+		return m;
+	};
+	sums.normal  = symmetric(sumOf(n1), sumOf(nc), sumOf(ns), sumOf(ncc), sumOf(ncs));
+	sums.spread  = symmetric(sumOf(q1), sumOf(qc), sumOf(qs), sumOf(qcc), sumOf(qcs));
+	sums.rhs     = {sumOf(r1), sumOf(rc), sumOf(rs)};
+	sums.squares = sumOf(squares);
+	sums.count   = sumOf(count);
+}
 
 } // namespace
 
@@ -27,6 +76,43 @@ double gaussianWeight(double x, double h)
 	return std::exp(-x * x / (h * h));
 }
 
+EulerFit fitEuler(LocalSamples<1>& samples)
+{
+	EulerSums sums;
+	addUp(samples, samples.pad(), sums);
+
+	EulerFit        fit;
+	Eigen::Matrix3d inverse;
+	// Relative to the sum of the weights, the determinant of well spread directions is 1/4.
+	const double total   = sums.normal(0, 0);
+	bool         regular = sums.count >= fewestDirections && total > 0.0;
+	if (regular)
+		(sums.normal / total).eval().computeInverseWithCheck(inverse, regular, 1e-6);
+	if (!regular)
+		return fit;
+	inverse /= total;
+	const Eigen::Vector3d v    = inverse * sums.rhs;
+	const double          half = std::sqrt(v[1] * v[1] + v[2] * v[2]); // (k1 - k2) / 2
+	fit.k1                     = v[0] + half;
+	fit.k2                     = v[0] - half;
+	// d1 lies where the cosine and sine of twice its angle are v2 and v3, over (k1 - k2) / 2.
+	const double cosine = half > 0.0 ? v[1] / half : 1.0, sine = half > 0.0 ? v[2] / half : 0.0;
+	fit.d1 = {
+		std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)),
+		std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), sine)};
+
+	const Eigen::Matrix3d covariance = inverse * sums.spread * inverse;
+	const double          freedom    = total * (1.0 - 3.0 / sums.count);
+	const double          variance   = std::max(0.0, sums.squares - v.dot(sums.rhs)) / freedom;
+	const Eigen::Vector3d slope(0.0, 2.0 * cosine, 2.0 * sine);
+	fit.error = std::sqrt(variance * slope.dot(covariance * slope));
+	fit.valid = std::isfinite(fit.k1) && std::isfinite(fit.k2) && std::isfinite(fit.error);
+	return fit;
+}
+
+namespace {
+
+// w^2 relative to its peak; 0 where w is below a thousandth of it (T06 section 6).
 double squaredWeight(double x, double h, const MWeightedCurvatureOptions& options)
 {
 	double w = 1.0;
@@ -45,52 +131,7 @@ double squaredWeight(double x, double h, const MWeightedCurvatureOptions& option
 	return w < smallestShare ? 0.0 : w * w;
 }
 
-void EulerLeastSquares::add(const Eigen::Vector3d& offset, double weight)
-{
-	const Eigen::Vector2d q      = m_frame.toPlane(offset);
-	const double          square = q.squaredNorm();
-	if (!(square > 0.0) || !(weight > 0.0))
-		return;
-	// T06 eq. 6; along the normal the sign is ours.
-	const double          curvature = -2.0 * offset.dot(m_frame.n) / offset.squaredNorm();
-	const Eigen::Vector3d row(
-		1.0, (q.x() * q.x() - q.y() * q.y()) / square, 2.0 * q.x() * q.y() / square);
-	m_normal.noalias() += weight * row * row.transpose();
-	m_spread.noalias() += weight * weight * row * row.transpose();
-	m_rhs += weight * curvature * row;
-	m_squares += weight * curvature * curvature;
-	++m_count;
-}
-
-EulerLeastSquares::Fit EulerLeastSquares::solve() const
-{
-	Fit             fit;
-	Eigen::Matrix3d inverse;
-	// Relative to the sum of the weights, the determinant of well spread directions is 1/4.
-	const double total   = m_normal(0, 0);
-	bool         regular = m_count >= fewestDirections && total > 0.0;
-	if (regular)
-		(m_normal / total).eval().computeInverseWithCheck(inverse, regular, 1e-6);
-	if (!regular)
-		return fit;
-	inverse /= total;
-	const Eigen::Vector3d v = inverse * m_rhs;
-	const double          half = std::hypot(v[1], v[2]); // (k1 - k2) / 2
-	// d1 lies where the cosine and sine of twice its angle are v2 and v3, over (k1 - k2) / 2.
-	const double angle = 0.5 * std::atan2(v[2], v[1]);
-	fit.k1             = v[0] + half;
-	fit.k2             = v[0] - half;
-	fit.d1             = m_frame.toSpace({std::cos(angle), std::sin(angle)});
-	fit.d2             = m_frame.n.cross(fit.d1);
-
-	const Eigen::Matrix3d covariance = inverse * m_spread * inverse;
-	const double freedom  = total * (1.0 - 3.0 / m_count);
-	const double variance = std::max(0.0, m_squares - v.dot(m_rhs)) / freedom;
-	const Eigen::Vector3d slope(0.0, 2.0 * std::cos(2.0 * angle), 2.0 * std::sin(2.0 * angle));
-	fit.error = std::sqrt(variance * slope.dot(covariance * slope));
-	fit.valid = std::isfinite(fit.k1) && std::isfinite(fit.k2) && std::isfinite(fit.error);
-	return fit;
-}
+} // namespace
 
 CurvatureField mWeightedCurvature(
 	const PointCloud&                cloud,
@@ -115,9 +156,10 @@ CurvatureField mWeightedCurvature(
 		const Eigen::Vector3d position = cloud.positions.col(i), normal = cloud.normals.col(i);
 		const TangentFrame    frame(normal);
 		const double          h = options.bandwidth * minimum.spacing[i];
-		EulerLeastSquares     squares(frame);
+		thread_local LocalSamples<1> samples;
 		std::vector<Index>    near = search.nearest(position, options.neighbors + 1);
 		std::sort(near.begin(), near.end());
+		samples.reserve(near.size());
 		double total = 0.0;
 		for (const Index j : near) {
 			if (j == i || cloud.normals.col(j).dot(normal) <= 0.0)
@@ -126,13 +168,14 @@ CurvatureField mWeightedCurvature(
 			const double          weight = squaredWeight(offset.norm(), h, options);
 			if (!(weight > 0.0))
 				continue;
-			squares.add(offset, weight);
+			const Eigen::Vector2d projected = frame.toPlane(offset);
+			samples.add(projected.x(), projected.y(), weight, Eigen::Matrix<double, 1, 1>(offset.dot(frame.n)));
 			rows[i].push_back(j);
 			weights[i].push_back(weight);
 			total += weight;
 			field.radius[i] = std::max(field.radius[i], offset.norm());
 		}
-		const EulerLeastSquares::Fit fit = squares.solve();
+		const EulerFit fit = fitEuler(samples);
 		if (!fit.valid) {
 			field.d1.col(i) = frame.u;
 			field.d2.col(i) = frame.v;
@@ -147,8 +190,8 @@ CurvatureField mWeightedCurvature(
 		field.k1[i]     = fit.k1;
 		field.k2[i]     = fit.k2;
 		field.error[i]  = fit.error;
-		field.d1.col(i) = fit.d1;
-		field.d2.col(i) = fit.d2;
+		field.d1.col(i) = frame.toSpace(fit.d1);
+		field.d2.col(i) = frame.n.cross(field.d1.col(i));
 	});
 	adoptWeights(rows, weights, field);
 	return field;

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "local_polynomial.h"
 #include "robust_curvature.h"
 
 namespace curvature_lines {
@@ -20,33 +21,16 @@ struct MWeightedCurvatureOptions {
 // power. Each equation of the least squares is weighted by w^2.
 double mWeight(double x, double h, Index exponent);
 double gaussianWeight(double x, double h);
-// w^2 relative to its peak; 0 where w is below a thousandth of it (T06 section 6).
-double squaredWeight(double x, double h, const MWeightedCurvatureOptions& options);
 
 // The least squares of T06 eq. 11 at one place: directional curvatures k(phi) = v1 + v2 cos 2 phi + v3 sin 2 phi.
-class EulerLeastSquares {
-public:
-	explicit EulerLeastSquares(const TangentFrame& frame) : m_frame(frame) {}
-
-	// A neighbour at `offset` from the place.
-	void add(const Eigen::Vector3d& offset, double weight);
-
-	struct Fit {
-		double          k1 = 0.0, k2 = 0.0; // convex positive: T06's with the opposite sign
-		Eigen::Vector3d d1, d2;             // unit, tangent
-		double          error = 0.0;        // standard error of k1 - k2
-		bool            valid = false;      // the neighbours' directions determine a tensor
-	};
-	Fit solve() const;
-
-private:
-	TangentFrame    m_frame;
-	Eigen::Matrix3d m_normal  = Eigen::Matrix3d::Zero();
-	Eigen::Matrix3d m_spread  = Eigen::Matrix3d::Zero(); // of squared weights: for the error
-	Eigen::Vector3d m_rhs     = Eigen::Vector3d::Zero();
-	double          m_squares = 0.0;
-	Index           m_count   = 0;
+struct EulerFit {
+	double          k1 = 0.0, k2 = 0.0;             // convex positive: T06's with the opposite sign
+	Eigen::Vector2d d1 = Eigen::Vector2d::UnitX();  // unit, in the tangent plane
+	double          error = 0.0;                    // standard error of k1 - k2
+	bool            valid = false;                  // the neighbours' directions determine a tensor
 };
+// Samples: heights of neighbours over the tangent plane at the place, which is the origin.
+EulerFit fitEuler(LocalSamples<1>& samples);
 
 // Normals are used as they are. weights and confidence are those of the least squares, each row summing up
 // to 1; error is from the scatter of the directional curvatures; feature is 0.

@@ -9,23 +9,22 @@ namespace curvature_lines {
 
 struct MovingLeastSquaresOptions {
 	double bandwidth       = 2.0; // of the Gaussian, in local spacings
-	Index  neighbors       = 60;  // looked at, at most
 	Index  planeIterations = 10;  // of the local plane, at most
 };
 
 class MovingLeastSquaresSurface : public PointSetSurface {
 public:
-	MovingLeastSquaresSurface(const ControlPoints& control, const MovingLeastSquaresOptions& options = {}) :
-			m_control(control), m_options(options)
-	{
-	}
+	MovingLeastSquaresSurface(const ControlPoints& control, const MovingLeastSquaresOptions& options = {});
 
 	// The quadratic of weighted least squares over the plane through q = r + t n that minimises
 	// sum <n, p_i - q>^2 exp(-|p_i - q|^2 / h^2); found by turns for n (covariance) and t.
-	std::optional<LocalQuadric> near(const Eigen::Vector3d& position) const override;
+	std::optional<LocalQuadric> near(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place) const override;
+	// From the same start: plane and quadratic both depend on the place.
+	bool follow(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const override;
 
 private:
-	ControlPoints             m_control;
 	MovingLeastSquaresOptions m_options;
 };
 

@@ -5,15 +5,14 @@
 
 #include <optional>
 
-#include "neighborhoods.h"
+#include "control_neighborhood.h"
 
 namespace curvature_lines {
 
 // z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 in the orthonormal frame (u, v, n) at origin.
 struct LocalQuadric {
 	Eigen::Vector3d             origin, u, v, n;
-	Eigen::Matrix<double, 6, 1> c       = Eigen::Matrix<double, 6, 1>::Zero();
-	double                      spacing = 0.0; // of the control points around, length
+	Eigen::Matrix<double, 6, 1> c = Eigen::Matrix<double, 6, 1>::Zero();
 
 	double height(double x, double y) const
 	{
@@ -35,28 +34,41 @@ struct LocalQuadric {
 	}
 };
 
+// Called from several threads.
 class PointSetSurface {
 public:
 	virtual ~PointSetSurface() = default;
-	// Nothing where no control point is near, or where they do not tell. Called from several threads.
-	virtual std::optional<LocalQuadric> near(const Eigen::Vector3d& position) const = 0;
-};
 
-// The points that define a surface. The cloud and the search must outlive it.
-struct ControlPoints {
-	const PointCloud&          cloud;
-	const NeighborSearch&      search;
-	const std::vector<double>& spacing; // per point, length
-};
+	// The control points that define the surface near a place; false where there is no surface.
+	bool gather(const Eigen::Vector3d& place, ControlNeighborhood& around) const
+	{
+		return around.gather(m_control, place, m_reach);
+	}
+	// Those that define it up to `margin` local spacings from a control point.
+	bool gather(Index point, double margin, ControlNeighborhood& around) const
+	{
+		return around.gather(m_control, point, m_reach + margin);
+	}
+	// Nothing where the points around do not tell.
+	virtual std::optional<LocalQuadric> near(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place) const = 0;
+	// A first approximation at the control point that `around` was gathered for: near(), or quicker.
+	virtual std::optional<LocalQuadric> roughlyAt(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place) const
+	{
+		return near(around, place);
+	}
+	// The same as near() for a place less than a spacing away from that of `quadric`, which is replaced: what
+	// may be kept of it saves time. False where the points around do not tell.
+	virtual bool follow(
+		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const = 0;
 
-// Control points around a place, all on one sheet.
-struct ControlNeighborhood {
-	std::vector<Index> points;        // by increasing distance
-	double             spacing = 0.0; // of those around, length: changes gradually from place to place
+protected:
+	PointSetSurface(const ControlPoints& control, double reach) : m_control(control), m_reach(reach) {}
 
-	// The nearest `count` points whose normals do not oppose that of the closest. False where there is no
-	// surface: farther than three spacings from the nearest point.
-	bool gather(const ControlPoints& control, const Eigen::Vector3d& position, Index count);
+private:
+	ControlPoints m_control;
+	double        m_reach; // local spacings
 };
 
 struct ProjectionOptions {

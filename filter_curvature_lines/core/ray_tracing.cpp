@@ -13,54 +13,76 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  sphereNeighbor = 6;
-constexpr double sphereFactor   = 1.5; // radius over the distance of that neighbour
-constexpr double largestSphere  = 3.0; // spacings: lonely points enclose no surface
-constexpr int    tile           = 16;  // pixels
+constexpr Index  sphereNeighbor = 6;    // as far as that from its point a sphere reaches
+constexpr double largestSphere  = 3.0;  // spacings: lonely points enclose no surface
+constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
+constexpr double margin         = 0.5;  // spacings: most places are that close to the point of their sphere
+constexpr double strayed        = 1.8;  // radii: so far from a sphere's centre others know the surface better
+constexpr double behind         = 5.0;  // radii: so close behind a front that was missed, a back is an artefact
+// Cosines between the normals of a hit and of its sphere's point: another sphere has to confirm it; no hit.
+constexpr double turned = 0.9, opposed = 0.3;
+constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
-	Vector3d center;
+	Vector3d center, normal;
 	double   radius;
 };
 
 using SphereTree = Eigen::KdBVH<double, 3, Index>;
 
-// Where a ray is inside of a sphere, and its parameter closest to the centre.
+// A sphere that a ray passes.
 struct Passage {
-	double enter, exit, closest;
+	double start;   // where on the ray the surface is likely: at the plane of the sphere's point
+	double closest; // to the sphere's centre
+	double off;     // squared distance from the centre to where the plane is met; larger than all where it is not
 	Index  sphere;
+	bool   done;
 };
 
-// All spheres a ray passes.
-struct PassageCollector {
+// All spheres within a distance of a ray.
+struct SphereCollector {
 	const std::vector<Sphere>& spheres;
 	const Ray&                 ray;
 	const Vector3d             inverse;
-	std::vector<Passage>&      passages;
+	double                     distance;
+	std::vector<Index>&        found;
 
 	bool intersectVolume(const SphereTree::Volume& box) const
 	{
 		double first = 0.0, last = std::numeric_limits<double>::infinity();
 		for (int c = 0; c < 3; ++c) {
-			double a = (box.min()[c] - ray.origin[c]) * inverse[c];
-			double b = (box.max()[c] - ray.origin[c]) * inverse[c];
-			if (a > b)
-				std::swap(a, b);
-			first = a > first ? a : first; // not std::max: of 0 * infinity nothing follows
-			last  = b < last ? b : last;
+			const double a    = (box.min()[c] - distance - ray.origin[c]) * inverse[c];
+			const double b    = (box.max()[c] + distance - ray.origin[c]) * inverse[c];
+			const double near = a < b ? a : b, far = a < b ? b : a;
+			first = near > first ? near : first; // not std::max: of 0 * infinity nothing follows
+			last  = far < last ? far : last;
 		}
 		return first <= last;
 	}
 	bool intersectObject(Index s)
 	{
 		const Vector3d d       = spheres[s].center - ray.origin;
-		const double   closest = d.dot(ray.direction);
-		const double   square  = spheres[s].radius * spheres[s].radius - d.squaredNorm() + closest * closest;
-		if (square > 0.0 && closest + std::sqrt(square) > 0.0)
-			passages.push_back({closest - std::sqrt(square), closest + std::sqrt(square), closest, s});
+		const double   closest = d.dot(ray.direction), reach = spheres[s].radius + distance;
+		if (d.squaredNorm() - closest * closest < reach * reach && closest + reach > 0.0)
+			found.push_back(s);
 		return false;
 	}
 };
+
+// Adds the passage of a ray through a sphere to others, if it meets it.
+void addPassage(const Ray& ray, const Sphere& sphere, Index index, std::vector<Passage>& passages)
+{
+	const Vector3d d       = sphere.center - ray.origin;
+	const double   closest = d.dot(ray.direction);
+	const double   whole   = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
+	const double   square  = whole - aside; // of half the passage
+	if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
+		return;
+	const double slope  = ray.direction.dot(sphere.normal);
+	const double start  = d.dot(sphere.normal) / slope, along = start - closest;
+	const bool   inside = std::abs(slope) > steepest && along * along < square;
+	passages.push_back({inside ? start : closest, closest, aside + (inside ? along * along : whole), index, false});
+}
 
 // The root of the quadric along `direction` from `start` (both in space) that is nearest to start; where there
 // is none, the place of closest approach, and `found` is false.
@@ -131,11 +153,12 @@ Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double colu
 struct RayTracer::Spheres {
 	std::vector<Sphere> all;
 	SphereTree          tree;
+	Eigen::AlignedBox3d box;
 };
 
 RayTracer::RayTracer(
 	const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options) :
-		m_surface(surface), m_options(options)
+		m_surface(surface), m_control(control), m_options(options)
 {
 	const Index n       = control.cloud.size();
 	auto        spheres = std::make_unique<Spheres>();
@@ -143,15 +166,17 @@ RayTracer::RayTracer(
 	parallelFor(n, {}, [&](Index i) {
 		const Vector3d center = control.cloud.positions.col(i);
 		const auto     near   = control.search.nearest(center, sphereNeighbor + 1);
-		const double   radius = sphereFactor * (control.cloud.positions.col(near.back()) - center).norm();
-		spheres->all[i]       = {center, std::min(radius, largestSphere * control.spacing[i])};
+		const double   radius = (control.cloud.positions.col(near.back()) - center).norm();
+		spheres->all[i]       = {
+            center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
 	});
-	std::vector<Index>             indices(n);
+	std::vector<Index>              indices(n);
 	std::vector<SphereTree::Volume> boxes(n);
 	for (Index i = 0; i < n; ++i) {
-		const auto& [center, radius] = spheres->all[i];
-		indices[i]                   = i;
-		boxes[i] = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
+		const auto& [center, normal, radius] = spheres->all[i];
+		indices[i] = i;
+		boxes[i]   = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
+		spheres->box.extend(boxes[i]);
 	}
 	if (n > 0)
 		spheres->tree.init(indices.begin(), indices.end(), boxes.begin(), boxes.end());
@@ -160,57 +185,146 @@ RayTracer::RayTracer(
 
 RayTracer::~RayTracer() = default;
 
-RayHit RayTracer::traceInSphere(const Ray& ray, const Vector3d& center, double radius) const
+const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory) const
 {
-	RayHit hit;
-	double t     = (center - ray.origin).dot(ray.direction);
-	bool   found = true;
-	for (int it = 0; it < m_options.maxIterations; ++it) {
-		const Vector3d                    point   = ray.origin + t * ray.direction;
-		const std::optional<LocalQuadric> quadric = m_surface.near(point);
-		if (!quadric)
-			return hit;
-		const bool   before = found;
-		const double step   = stepToQuadric(*quadric, point, ray.direction, found);
-		t += step;
-		const Vector3d moved = ray.origin + t * ray.direction;
-		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
-		if (!(found || before) || (moved - center).squaredNorm() > radius * radius || !(t > 0.0))
-			return hit;
-		if (found && std::abs(step) < m_options.tolerance * quadric->spacing) {
-			hit.depth    = t;
-			hit.position = moved;
-			hit.normal   = quadric->normalAt(moved);
-			return hit;
-		}
+	Memory::Slot& slot = memory.m_slots[point % memory.m_slots.size()];
+	if (slot.point != point) {
+		slot.point = point;
+		slot.quadric.reset();
+		if (m_surface.gather(point, margin, slot.around))
+			slot.quadric = m_surface.roughlyAt(slot.around, m_control.cloud.positions.col(point));
 	}
-	return hit;
+	return slot;
+}
+
+struct RayTracer::Approach {
+	RayHit hit;
+	double last;             // where on the ray the surface was looked for
+	bool   doubtful = false; // far from the sphere's point or on another face
+};
+
+RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double start, Memory& memory) const
+{
+	Approach            result{{}, start};
+	const Sphere&       sphere = m_spheres->all[point];
+	const Memory::Slot& slot   = surfaceAt(point, memory);
+	if (!slot.quadric)
+		return result;
+	LocalQuadric quadric  = *slot.quadric;
+	double       t        = start;
+	Vector3d     place    = ray.origin + t * ray.direction;
+	bool         found    = true;
+	double       lastStep = 0.0, lastMove = 0.0;
+	for (int it = 0; it < m_options.maxIterations; ++it) {
+		const bool   before = found;
+		const double step   = stepToQuadric(quadric, place, ray.direction, found);
+		// From the third quadric on, a secant step: where the surface bends more than they know, plain steps
+		// go to and fro.
+		const double change = lastStep - step;
+		lastMove = it > 1 && change * lastMove > 0.25 * lastMove * lastMove ? step * lastMove / change : step;
+		lastStep = step;
+		t += lastMove;
+		place = ray.origin + t * ray.direction;
+		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
+		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius || !(t > 0.0))
+			return result;
+		result.last = t;
+		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
+			const Vector3d normal = quadric.normalAt(place);
+			const double   turn   = normal.dot(slot.around.side());
+			result.doubtful       = turn < turned || (place - sphere.center).norm() > sphere.radius;
+			if (turn > opposed && !slot.around.pastEdge(place, normal))
+				result.hit = {t, place, normal};
+			return result;
+		}
+		if (!m_surface.follow(slot.around, place, quadric))
+			return result;
+	}
+	return result;
+}
+
+void RayTracer::aim(const Ray& axis, double spread, Memory& memory) const
+{
+	memory.m_spheres.clear();
+	if (m_spheres->all.empty())
+		return;
+	const Eigen::AlignedBox3d& box = m_spheres->box;
+	const double farthest = (axis.origin - box.center()).norm() + 0.5 * box.diagonal().norm();
+	SphereCollector collector{
+		m_spheres->all, axis, axis.direction.cwiseInverse(), spread * farthest, memory.m_spheres};
+	Eigen::BVIntersect(m_spheres->tree, collector);
 }
 
 RayHit RayTracer::trace(const Ray& ray) const
 {
+	Memory memory;
+	aim(ray, 0.0, memory);
+	return trace(ray, memory);
+}
+
+RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
+{
 	RayHit best;
-	if (m_spheres->all.empty())
-		return best;
 	thread_local std::vector<Passage> passages;
 	passages.clear();
-	PassageCollector collector{m_spheres->all, ray, ray.direction.cwiseInverse(), passages};
-	Eigen::BVIntersect(m_spheres->tree, collector);
+	for (const Index s : memory.m_spheres)
+		addPassage(ray, m_spheres->all[s], s, passages);
 	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
-		return a.enter != b.enter ? a.enter < b.enter : a.sphere < b.sphere;
+		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
 	});
-	// Spheres that hold the hit already found would find it again: only what lies before it is of interest.
-	for (const Passage& passage : passages) {
-		if (passage.enter > best.depth)
-			break;
-		if (passage.exit > best.depth)
+	double slipped = 0.0; // no back before
+	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
+		if (passages[first].done)
 			continue;
-		const Sphere& sphere = m_spheres->all[passage.sphere];
-		const RayHit  hit    = traceInSphere(ray, sphere.center, sphere.radius);
-		if (hit.depth < best.depth)
-			best = hit;
+		// Of the spheres that expect the surface about here, the one whose point is closest to it.
+		const double last   = passages[first].start + m_spheres->all[passages[first].sphere].radius;
+		std::size_t  chosen = first;
+		for (std::size_t k = first; k < passages.size() && passages[k].start < last; ++k)
+			if (!passages[k].done && passages[k].off < passages[chosen].off)
+				chosen = k;
+		Approach found = approach(ray, passages[chosen].sphere, passages[chosen].start, memory);
+		if (found.hit.exists() && found.doubtful) {
+			// Near sharp edges neighbourhoods differ: that of the closest point decides.
+			const Index nearest = m_control.search.nearest(found.hit.position, 1).front();
+			if (nearest != passages[chosen].sphere)
+				found = approach(ray, nearest, found.hit.depth, memory);
+		}
+		// At thin rims a ray may slip past the rounded front and meet the back, from inside.
+		const Sphere& sphere = m_spheres->all[passages[chosen].sphere];
+		if (!found.hit.exists() && sphere.normal.dot(ray.direction) < 0.0)
+			slipped = std::max(slipped, passages[chosen].closest + behind * sphere.radius);
+		if (found.hit.depth < slipped && found.hit.normal.dot(ray.direction) > 0.0)
+			found.hit = {};
+		if (found.hit.depth < best.depth)
+			best = found.hit;
+		// Spheres about there would find the same.
+		passages[first].done = passages[chosen].done = true;
+		const double alike = found.hit.exists() ? 1.0 : 0.5; // radii
+		for (Passage& passage : passages)
+			if (std::abs(passage.closest - found.last) < alike * m_spheres->all[passage.sphere].radius)
+				passage.done = true;
 	}
 	return best;
+}
+
+void aimAt(
+	const RayTracer&         tracer,
+	const Camera&            camera,
+	const RayTracingOptions& image,
+	double                   column,
+	double                   row,
+	double                   size,
+	RayTracer::Memory&       memory)
+{
+	const Ray axis   = rayThrough(camera, image, column, row);
+	double    spread = 0.0;
+	for (const double dx : {-0.5, 0.5})
+		for (const double dy : {-0.5, 0.5}) {
+			const Vector3d corner = rayThrough(camera, image, column + dx * size, row + dy * size).direction;
+			const double   along  = corner.dot(axis.direction);
+			spread                = std::max(spread, (corner / along - axis.direction).norm());
+		}
+	tracer.aim(axis, spread, memory);
 }
 
 std::vector<RayHit> traceImage(
@@ -220,13 +334,18 @@ std::vector<RayHit> traceImage(
 	const Progress&          progress)
 {
 	std::vector<RayHit> hits(std::size_t(options.width) * options.height);
-	const int           columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
+	const int columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
 	parallelFor(columns * rows, progress, [&](Index t) {
-		const int left = tile * (t % columns), top = tile * (t / columns);
-		for (int y = top; y < std::min(top + tile, options.height); ++y)
-			for (int x = left; x < std::min(left + tile, options.width); ++x)
-				hits[std::size_t(y) * options.width + x] =
-					tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5));
+		const int         left = tile * (t % columns), top = tile * (t / columns);
+		RayTracer::Memory memory;
+		for (int block = 0; block < (tile / beam) * (tile / beam); ++block) {
+			const int x0 = left + beam * (block % (tile / beam)), y0 = top + beam * (block / (tile / beam));
+			aimAt(tracer, camera, options, x0 + 0.5 * beam, y0 + 0.5 * beam, beam, memory);
+			for (int y = y0; y < std::min(y0 + beam, options.height); ++y)
+				for (int x = x0; x < std::min(x0 + beam, options.width); ++x)
+					hits[std::size_t(y) * options.width + x] =
+						tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5), memory);
+		}
 	});
 	return hits;
 }

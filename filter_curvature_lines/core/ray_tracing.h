@@ -21,7 +21,7 @@ struct Camera {
 
 struct RayTracingOptions {
 	int    width = 533, height = 400; // pixels
-	double tolerance     = 1e-4;      // in local spacings, of the point on the surface
+	double tolerance     = 1e-2;      // in local spacings: the last step along the ray, many times the error left
 	int    maxIterations = 10;        // quadrics per sphere
 };
 
@@ -43,18 +43,47 @@ public:
 	RayTracer(const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options);
 	~RayTracer();
 
+	// What rays next to each other share; changes no result. For one tracer and one thread.
+	class Memory {
+		friend class RayTracer;
+		struct Slot {
+			Index                       point = -1;
+			ControlNeighborhood         around;
+			std::optional<LocalQuadric> quadric; // at the point; none where there is no surface
+		};
+		std::vector<Slot>  m_slots = std::vector<Slot>(256);
+		std::vector<Index> m_spheres; // those that rays of the beam may pass
+	};
+
+	// Prepares for rays from one origin whose directions differ from that of the axis by `spread` (tangent) at
+	// most.
+	void   aim(const Ray& axis, double spread, Memory& memory) const;
+	RayHit trace(const Ray& ray, Memory& memory) const;
+	// Of a single ray.
 	RayHit trace(const Ray& ray) const;
 
 private:
 	struct Spheres;
-	RayHit traceInSphere(const Ray& ray, const Eigen::Vector3d& center, double radius) const;
+	struct Approach;
+	Approach approach(const Ray& ray, Index point, double start, Memory& memory) const;
+	const Memory::Slot& surfaceAt(Index point, Memory& memory) const;
 
 	const PointSetSurface&         m_surface;
+	ControlPoints                  m_control;
 	RayTracingOptions              m_options;
 	std::unique_ptr<const Spheres> m_spheres;
 };
 
 Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double column, double row);
+// For the rays through a square of pixels, `size` wide, about a place of the image.
+void aimAt(
+	const RayTracer&         tracer,
+	const Camera&            camera,
+	const RayTracingOptions& image,
+	double                   column,
+	double                   row,
+	double                   size,
+	RayTracer::Memory&       memory);
 
 // width x height hits, row by row, through the middles of the pixels.
 std::vector<RayHit> traceImage(

@@ -72,4 +72,20 @@ Eigen::Matrix3Xd SpatialOrder::restore(const Eigen::Matrix3Xd& columns) const
 	return restored;
 }
 
+PreparedCloud inSpatialOrder(const PreparedCloud& prepared)
+{
+	const SpatialOrder order(prepared.cloud.positions);
+	PreparedCloud      result = prepared;
+	result.cloud              = {order.arrange(prepared.cloud.positions), order.arrange(prepared.cloud.normals)};
+	std::vector<Index> place(order.source.size());
+	for (std::size_t k = 0; k < place.size(); ++k) {
+		place[order.source[k]] = static_cast<Index>(k);
+		result.source[k]       = prepared.source[order.source[k]];
+	}
+	for (Index& kept : result.representative)
+		if (kept >= 0)
+			kept = place[kept];
+	return result;
+}
+
 } // namespace curvature_lines

@@ -22,4 +22,7 @@ struct SpatialOrder {
 	Eigen::Matrix3Xd restore(const Eigen::Matrix3Xd& columns) const;
 };
 
+// The same points in this order.
+PreparedCloud inSpatialOrder(const PreparedCloud& prepared);
+
 } // namespace curvature_lines

@@ -155,6 +155,7 @@ Picture renderPicture(
 		return hit.exists() ? shade(hit) : options.background;
 	};
 	parallelFor(height, progress.sub(0.8, 1.0, "Shading"), [&](Index y) {
+		RayTracer::Memory memory;
 		for (int x = 0; x < width; ++x) {
 			const std::size_t p = std::size_t(y) * width + x;
 			bool outline = false;
@@ -170,9 +171,10 @@ Picture renderPicture(
 				continue;
 			}
 			Vector3d sum = Vector3d::Zero();
+			aimAt(tracer, camera, options.image, x + 0.5, y + 0.5, 1.0, memory);
 			for (const double dx : {0.25, 0.75})
 				for (const double dy : {0.25, 0.75})
-					sum += colorOf(tracer.trace(rayThrough(camera, options.image, x + dx, y + dy)));
+					sum += colorOf(tracer.trace(rayThrough(camera, options.image, x + dx, y + dy), memory));
 			pixels.col(p) = 0.25 * sum;
 		}
 	});

@@ -112,7 +112,6 @@ FilterResults apply(const FilterContext& context)
 	options.bandwidth      = parameters.real("bandwidth", 0.5, 20.0);
 	options.diffusionSteps = parameters.integer("diffusion_steps", 1, 1000);
 	options.diffusion = static_cast<CurvatureDrivenOptions::Diffusion>(parameters.choice("diffusion_function"));
-	options.neighbors = std::max<Index>(options.neighbors, Index(7.0 * options.bandwidth * options.bandwidth));
 	const Index      perPoint = parameters.integer("resample", 1, 100);
 	const MeshModel& control  = layerOf(context, "control_mesh");
 	const MeshModel& proxy    = layerOf(context, "proxy_mesh");

@@ -10,7 +10,9 @@
 
 #include "core/curvature_colors.h"
 #include "core/curvature_driven_projection.h"
+#include "core/m_weighted_curvature.h"
 #include "core/moving_least_squares.h"
+#include "core/spatial_order.h"
 #include "core/surface_picture.h"
 
 namespace curvature_lines {
@@ -198,7 +200,8 @@ FilterResults apply(const FilterContext& context)
 	const LayerPoints          points = readOrientedPoints(layer);
 	FilterResults              results;
 	Stopwatch                  total, stage;
-	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
+	// Rays next to each other read points next to each other.
+	const PreparedCloud prepared = inSpatialOrder(prepareCloud(points.positions, points.normals));
 	const Camera camera = cameraOf(parameters, prepared, double(options.image.width) / options.image.height);
 	const NeighborSearch       search(prepared.cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(

@@ -72,7 +72,9 @@ TEST(CurvatureDrivenProjection, LandsOnACleanSurface)
 	const CurvatureDrivenSurface surface = control.surface();
 	for (Index i = 0; i < 4000; ++i) {
 		normals += 1.0 - found.normals.col(i).dot(truth.normals.col(i));
-		const auto quadric = surface.near(found.positions.col(i));
+		ControlNeighborhood around;
+		ASSERT_TRUE(surface.gather(found.positions.col(i), around));
+		const auto quadric = surface.near(around, found.positions.col(i));
 		ASSERT_TRUE(quadric);
 		k1 += std::pow(-2.0 * quadric->c[3] - truth.k1[i], 2) / 4000;
 		EXPECT_NEAR(found.normals.col(i).norm(), 1.0, 1e-9);
@@ -187,6 +189,74 @@ TEST(CurvatureDrivenProjection, InvariancesOfTheGeometry)
 	omp_set_num_threads(3);
 	EXPECT_EQ(projectPoints(control.surface(), queries).positions, base.positions);
 	omp_set_num_threads(threads);
+}
+
+TEST(ControlNeighborhood, SumsAreThoseOfTheFormula)
+{
+	const auto          torus = sampled("torus", 3000, 0.002);
+	const Control       control(torus.positions, torus.normals);
+	const ControlPoints points{control.cloud, control.search, control.minimum.spacing};
+	const Vector3d      place = torus.positions.col(7) + 0.3 * control.spacing() * torus.normals.col(7);
+	ControlNeighborhood around;
+	ASSERT_TRUE(around.gather(points, place, 4.4));
+	EXPECT_GT(around.size(), 40);
+	EXPECT_NEAR(around.spacing(), control.spacing(), 0.3 * control.spacing());
+	const double    h = 2.0 * around.spacing();
+	NormalSums      normals;
+	PlaneSums       plane;
+	for (int k = 0; k < around.size(); ++k) {
+		const Vector3d d = around.position(k) - place;
+		const double   w = std::exp(-d.squaredNorm() / (h * h));
+		normals.weight += w;
+		normals.offset += w * d;
+		normals.normal += w * around.normal(k);
+		normals.plane += w * d.dot(around.normal(k));
+		plane.square += w * d * d.transpose();
+	}
+	const NormalSums a = around.normalSums(place, h);
+	const PlaneSums  b = around.planeSums(place, h);
+	const double     near = 1e-8 * normals.weight;
+	EXPECT_NEAR(a.weight, normals.weight, near);
+	EXPECT_LT((a.offset - normals.offset).norm(), near * h);
+	EXPECT_LT((a.normal - normals.normal).norm(), near);
+	EXPECT_NEAR(a.plane, normals.plane, near * h);
+	EXPECT_NEAR(b.weight, normals.weight, near);
+	EXPECT_LT((b.offset - normals.offset).norm(), near * h);
+	EXPECT_LT((b.square - plane.square).norm(), near * h * h);
+
+	LocalSamples<1>    heights;
+	const TangentFrame frame(around.side());
+	around.heights(place, frame, h, heights);
+	ASSERT_EQ(heights.size(), around.size());
+	for (int k = 0; k < around.size(); ++k) {
+		const Vector3d d = (around.position(k) - place) / h;
+		EXPECT_NEAR(heights.x[k], d.dot(frame.u), 1e-12);
+		EXPECT_NEAR(heights.y[k], d.dot(frame.v), 1e-12);
+		EXPECT_NEAR(heights.value[0][k], d.dot(frame.n), 1e-12);
+		EXPECT_NEAR(heights.weight[k], std::exp(-d.squaredNorm()), 1e-8);
+	}
+}
+
+TEST(ControlNeighborhood, UnevenCloudsGiveSomeNeighboursAndNotTooMany)
+{
+	// A patch much denser than the sheet it is on, and a sheet behind it.
+	const auto sparse = sampled("plane", 1600);
+	Matrix3Xd  positions(3, 4200), normals = Vector3d::UnitZ().replicate(1, 4200);
+	positions << sparse.positions, 0.2 * sampled("plane", 1000).positions, sparse.positions.colwise() - Vector3d(0, 0, 0.02);
+	normals.rightCols(1600) *= -1.0;
+	const Control       control(positions, normals);
+	const ControlPoints points{control.cloud, control.search, control.minimum.spacing};
+	ControlNeighborhood around;
+	for (Index i = 0; i < control.cloud.size(); i += 7) {
+		ASSERT_TRUE(around.gather(points, i, 4.4));
+		EXPECT_GE(around.size(), 10);
+		EXPECT_LE(around.size(), 300);
+		EXPECT_GT(around.spacing(), 0.0);
+		for (int k = 0; k < around.size(); ++k)
+			EXPECT_GT(around.normal(k).dot(normals.col(i)), 0.0);
+	}
+	EXPECT_FALSE(around.gather(points, Vector3d(3, 3, 3), 4.4));
+	EXPECT_FALSE(around.gather(points, Vector3d::Constant(std::nan("")), 4.4));
 }
 
 TEST(CurvatureDrivenProjection, DegenerateControlCloudsLeavePointsWhereTheyAre)

@@ -61,46 +61,53 @@ TEST(MWeight, PeaksAtBandwidthTimesRootOfExponent)
 	EXPECT_DOUBLE_EQ(gaussianWeight(2.0, 2.0), std::exp(-1.0));
 }
 
-TEST(EulerLeastSquares, IsTheWeightedLeastSquaresSolution)
+void add(LocalSamples<1>& samples, const Vector3d& q, double weight)
+{
+	samples.add(q.x(), q.y(), weight, Eigen::Matrix<double, 1, 1>(q.z()));
+}
+
+TEST(EulerFit, IsTheWeightedLeastSquaresSolution)
 {
 	samples::Random random(5, 0);
 	for (int repeat = 0; repeat < 20; ++repeat) {
-		const TangentFrame  frame(random.normal3().normalized());
-		EulerLeastSquares   squares(frame);
-		constexpr int       count = 15;
-		Eigen::MatrixXd     a(count, 3);
-		Eigen::VectorXd     b(count);
+		constexpr int   count = 15;
+		LocalSamples<1> neighbors;
+		neighbors.reserve(count + 2);
+		Eigen::MatrixXd a(count, 3);
+		Eigen::VectorXd b(count);
 		for (int s = 0; s < count; ++s) {
 			const Vector3d q = random.normal3();
-			const double   w = random.uniform(0.1, 2.0), phi = std::atan2(q.dot(frame.v), q.dot(frame.u));
-			squares.add(q, w);
+			const double   w = random.uniform(0.1, 2.0), phi = std::atan2(q.y(), q.x());
+			add(neighbors, q, w);
 			a.row(s) << 1.0, std::cos(2 * phi), std::sin(2 * phi);
 			a.row(s) *= std::sqrt(w);
-			b[s] = -std::sqrt(w) * 2.0 * q.dot(frame.n) / q.squaredNorm();
+			b[s] = -std::sqrt(w) * 2.0 * q.z() / q.squaredNorm();
 		}
+		add(neighbors, Vector3d::Zero(), 1.0); // neither of them has a direction
+		add(neighbors, Vector3d::UnitZ(), 1.0);
 		const Vector3d v   = a.colPivHouseholderQr().solve(b);
-		const auto     fit = squares.solve();
+		const EulerFit fit = fitEuler(neighbors);
 		ASSERT_TRUE(fit.valid);
 		EXPECT_NEAR(fit.k1, v[0] + std::hypot(v[1], v[2]), 1e-9);
 		EXPECT_NEAR(fit.k2, v[0] - std::hypot(v[1], v[2]), 1e-9);
-		const double phi = std::atan2(fit.d1.dot(frame.v), fit.d1.dot(frame.u));
+		const double phi = std::atan2(fit.d1.y(), fit.d1.x());
 		EXPECT_NEAR(v[0] + v[1] * std::cos(2 * phi) + v[2] * std::sin(2 * phi), fit.k1, 1e-9);
-		EXPECT_NEAR(fit.d1.dot(fit.d2), 0.0, 1e-12);
-		EXPECT_NEAR(fit.d1.cross(fit.d2).dot(frame.n), 1.0, 1e-12);
+		EXPECT_NEAR(fit.d1.norm(), 1.0, 1e-12);
 	}
 }
 
-TEST(EulerLeastSquares, NeedsDirectionsThatDetermineATensor)
+TEST(EulerFit, NeedsDirectionsThatDetermineATensor)
 {
-	const TangentFrame frame(Vector3d::UnitZ());
-	EulerLeastSquares  none(frame), line(frame), cross(frame);
+	LocalSamples<1> none, line, cross;
+	for (auto* neighbors : {&none, &line, &cross})
+		neighbors->reserve(9);
 	for (int s = 1; s < 9; ++s) {
-		line.add(Vector3d(s % 2 ? s : -s, 0, 0.1 * s), 1.0);
-		cross.add(s % 2 ? Vector3d(s, 0, 0.1 * s) : Vector3d(0, s, 0.2 * s), 1.0);
+		add(line, Vector3d(s % 2 ? s : -s, 0, 0.1 * s), 1.0);
+		add(cross, s % 2 ? Vector3d(s, 0, 0.1 * s) : Vector3d(0, s, 0.2 * s), 1.0);
 	}
-	EXPECT_FALSE(none.solve().valid);
-	EXPECT_FALSE(line.solve().valid);
-	EXPECT_FALSE(cross.solve().valid); // the twist between two lines is not seen
+	EXPECT_FALSE(fitEuler(none).valid);
+	EXPECT_FALSE(fitEuler(line).valid);
+	EXPECT_FALSE(fitEuler(cross).valid); // the twist between two lines is not seen
 }
 
 TEST(MWeightedCurvature, ExactSurfaces)

@@ -136,6 +136,47 @@ TEST(RayTracing, OpenSurfaceEndsNearItsRim)
 	EXPECT_FALSE(tracer.trace({box.center() - Vector3d::UnitZ(), -Vector3d::UnitZ()}).exists());
 }
 
+TEST(RayTracing, RaysOfABlockMeetWhatTheyMeetAlone)
+{
+	const Scene                  scene("torus", 2000);
+	const CurvatureDrivenSurface surface(scene.control());
+	const auto                   options = small();
+	const RayTracer              tracer(surface, scene.control(), options);
+	const Camera                 camera = Camera::facing(scene.cloud, 1.5);
+	const auto                   hits   = traceImage(tracer, camera, options);
+	for (int y = 0; y < options.height; ++y)
+		for (int x = 0; x < options.width; ++x)
+			EXPECT_EQ(
+				hits[y * options.width + x].depth,
+				tracer.trace(rayThrough(camera, options, x + 0.5, y + 0.5)).depth);
+}
+
+TEST(RayTracing, ClosedShapesWithSharpEdgesHideTheirBacks)
+{
+	for (const char* shape : {"cube", "torus"}) {
+		const Scene                     scene(shape, 6000);
+		const CurvatureDrivenSurface    driven(scene.control());
+		const MovingLeastSquaresSurface squares(scene.control());
+		const auto                      options = small(150, 100);
+		const Camera                    camera  = Camera::facing(scene.cloud, 1.5);
+		for (const PointSetSurface* surface : {static_cast<const PointSetSurface*>(&driven), static_cast<const PointSetSurface*>(&squares)}) {
+			const auto hits = traceImage(RayTracer(*surface, scene.control(), options), camera, options);
+			int        seen = 0, backs = 0, holes = 0;
+			for (int y = 1; y + 1 < options.height; ++y)
+				for (int x = 1; x + 1 < options.width; ++x) {
+					const auto    at  = [&](int dx, int dy) { return hits[(y + dy) * options.width + x + dx]; };
+					const RayHit& hit = at(0, 0);
+					seen += hit.exists();
+					backs += hit.exists() && hit.normal.dot(camera.position - hit.position) < -0.1 * hit.depth;
+					holes += !hit.exists() && at(-1, 0).exists() && at(1, 0).exists() && at(0, -1).exists() && at(0, 1).exists();
+				}
+			EXPECT_GT(seen, 2500);
+			EXPECT_LE(backs, seen / 250) << shape; // along outlines
+			EXPECT_LE(holes, seen / 1000) << shape;
+		}
+	}
+}
+
 TEST(RayTracing, NumberOfThreadsChangesNothing)
 {
 	const Scene                  scene("torus", 1500);

@@ -1,6 +1,7 @@
 // The order in which near points follow each other, and the samples drawn from it.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -68,6 +69,26 @@ TEST(SpatialOrder, SamplesAreTheFirstOfTheShuffledOrder)
 	for (const Index k : sample)
 		EXPECT_LT(order.rank[k], 60);
 	EXPECT_EQ(order.sample(1000).size(), 500u);
+}
+
+TEST(SpatialOrder, PreparedCloudsKeepTheirPoints)
+{
+	Eigen::Matrix3Xd positions = torus(500), normals = positions.colwise().normalized();
+	positions.col(7).setConstant(std::nan(""));
+	positions.col(9)             = positions.col(8);
+	const PreparedCloud given    = prepareCloud(positions, normals);
+	const PreparedCloud arranged = inSpatialOrder(given);
+	ASSERT_EQ(arranged.cloud.size(), given.cloud.size());
+	EXPECT_EQ(arranged.representative[7], -1);
+	EXPECT_EQ(arranged.representative[9], arranged.representative[8]);
+	for (Index i = 0; i < 500; ++i) {
+		const Index before = given.representative[i], now = arranged.representative[i];
+		if (now < 0)
+			continue;
+		EXPECT_EQ(arranged.cloud.positions.col(now), given.cloud.positions.col(before));
+		EXPECT_EQ(arranged.cloud.normals.col(now), given.cloud.normals.col(before));
+		EXPECT_EQ(arranged.source[now], given.source[before]);
+	}
 }
 
 } // namespace

@@ -1,6 +1,9 @@
 # Every filter on everything a layer can be: the right result, or an error that says what to do and leaves
 # the document as it was.
 # SPDX-License-Identifier: GPL-3.0-or-later
+import tempfile
+from pathlib import Path
+
 import numpy as np
 import pymeshlab
 import pytest
@@ -16,6 +19,8 @@ from helpers import (
     ON_CLOUDS,
     OUTLIERS,
     PIPELINE,
+    PROJECT,
+    RAY_TRACE,
     SMOOTH,
     TRACE,
     attribute,
@@ -27,7 +32,13 @@ from helpers import (
 )
 
 RNG = np.random.default_rng(5)
-QUICK = {TRACE: {"epsilon": 0.01}, PIPELINE: {"denoise": False, "reject_outliers": False}}
+PICTURE = Path(tempfile.gettempdir()) / "curvature_lines_bad_input.png"  # which no refused filter writes
+QUICK = {
+    TRACE: {"epsilon": 0.01},
+    PIPELINE: {"denoise": False, "reject_outliers": False},
+    RAY_TRACE: {"image_file": str(PICTURE), "width": 60, "height": 40},
+}
+SURFACES = [PROJECT, RAY_TRACE]
 
 
 @pytest.fixture(scope="module")
@@ -60,14 +71,15 @@ HOPELESS = {
 }
 
 
-@pytest.mark.parametrize("name", ON_CLOUDS)
+@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
 @pytest.mark.parametrize("kind", HOPELESS)
 def test_hopeless_clouds_are_refused(name, kind):
     positions, normals, match = HOPELESS[kind]
     refused(layer(positions, normals), name, match)
+    assert not PICTURE.exists()
 
 
-@pytest.mark.parametrize("name", ON_CLOUDS)
+@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
 def test_empty_layer_is_refused(name):
     meshes = layer(UP, UP)
     meshes.set_selection_all()
@@ -75,13 +87,13 @@ def test_empty_layer_is_refused(name):
     refused(meshes, name, "is empty")
 
 
-@pytest.mark.parametrize("name", ON_CLOUDS)
+@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
 def test_missing_normals_are_refused_with_the_cure(torus, name):
     parameters = {"estimate_normals": "Never"} if name == PIPELINE else {}
     refused(layer(torus["positions"]), name, "Compute normals for point sets", **parameters)
 
 
-@pytest.mark.parametrize("name", ON_CLOUDS)
+@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
 def test_mostly_missing_normals_are_refused(torus, name):
     normals = torus["normals"].copy()
     normals[: len(normals) // 2 + 100] = 0.0
@@ -89,7 +101,7 @@ def test_mostly_missing_normals_are_refused(torus, name):
     refused(layer(torus["positions"], normals), name, "ormals for point sets", **parameters)
 
 
-@pytest.mark.parametrize("name", [*ON_CLOUDS, MESH])
+@pytest.mark.parametrize("name", [*ON_CLOUDS, *SURFACES, MESH])
 def test_no_layer_at_all(name):
     with pytest.raises(pymeshlab.PyMeshLabException):
         pymeshlab.MeshSet().apply_filter(name)
@@ -127,11 +139,22 @@ OUT_OF_RANGE = [
     (PIPELINE, "scale_mode", [2]),
     (FEATURES, "min_angle", [4.9, 151.0, float("nan")]),
     (FEATURES, "spacing", [-1.0, float("inf")]),
-    (M_WEIGHTED, "bandwidth", [0.0, -1.0, 21.0]),
+    (M_WEIGHTED, "bandwidth", [0.0, -1.0, 21.0, float("nan"), float("inf")]),
     (M_WEIGHTED, "exponent", [0, 11]),
     (M_WEIGHTED, "neighbors", [5, 1001]),
     (M_WEIGHTED, "weighting", [-1, 3]),
-    (M_WEIGHTED, "scalar", [7]),
+    (M_WEIGHTED, "scalar", [-1, 7]),
+    (M_WEIGHTED, "umbilic_ratio", [-0.1, 1.1, float("nan")]),
+    (PROJECT, "bandwidth", [0.0, 21.0, float("nan")]),
+    (PROJECT, "diffusion_steps", [0, 1001]),
+    (PROJECT, "diffusion_function", [-1, 3]),
+    (PROJECT, "resample", [0, 101]),
+    (RAY_TRACE, "width", [0, 8193]),
+    (RAY_TRACE, "height", [0, 8193]),
+    (RAY_TRACE, "surface", [-1, 2]),
+    (RAY_TRACE, "color_by", [3]),
+    (RAY_TRACE, "camera", [2]),
+    (RAY_TRACE, "field_of_view", [0.5, 151.0, float("nan")]),
 ]
 
 
@@ -173,7 +196,7 @@ def test_some_points_are_nowhere(torus, name, value):
     meshes = layer(positions, torus["normals"])
     report = apply(meshes, name)
     assert report["invalid"] == len(positions[::100])
-    if name in (CURVATURE, SMOOTH):
+    if name in (CURVATURE, SMOOTH, M_WEIGHTED):
         values = attributes(meshes)
         assert all(np.all(np.isfinite(values[key])) for key in ATTRIBUTES)
         assert np.all(values["curv_status"][::100] == INVALID)
@@ -185,18 +208,27 @@ def test_some_points_are_nowhere(torus, name, value):
         assert np.all(np.isfinite(np.delete(moved, np.s_[::100], axis=0)))
 
 
-def curvature(positions, normals, **parameters):
+def curvature(positions, normals, name=CURVATURE, **parameters):
     meshes = layer(positions, normals)
-    meshes.apply_filter(CURVATURE, **parameters)
+    meshes.apply_filter(name, **parameters)
     return attributes(meshes)
 
 
-def test_normals_of_any_length(torus):
+@pytest.mark.parametrize("name", [CURVATURE, M_WEIGHTED])
+def test_normals_of_any_length(torus, name):
     lengths = 10.0 ** RNG.uniform(-6, 6, (len(torus["normals"]), 1))
-    scaled = curvature(torus["positions"], lengths * torus["normals"])
-    plain = curvature(torus["positions"], torus["normals"])
+    scaled = curvature(torus["positions"], lengths * torus["normals"], name)
+    plain = curvature(torus["positions"], torus["normals"], name)
     for key in ATTRIBUTES:
         np.testing.assert_allclose(scaled[key], plain[key], rtol=1e-5, atol=1e-7)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_scale_of_the_model_with_m_weights(torus, scale):
+    scaled = curvature(scale * torus["positions"], torus["normals"], M_WEIGHTED)
+    plain = curvature(torus["positions"], torus["normals"], M_WEIGHTED)
+    for key, power in [("curv_k1", -1), ("curv_k2", -1), ("curv_error", -1), ("curv_scale", 1), ("curv_confidence", 0)]:
+        np.testing.assert_allclose(scaled[key] / scale**power, plain[key], rtol=1e-4, atol=1e-5)
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
@@ -226,9 +258,10 @@ def test_far_from_the_origin(torus):
     assert np.linalg.norm(meshes.current_mesh().vertex_matrix() - 1e6, axis=1).max() < 2.0
 
 
-def test_plane_has_no_curvature():
+@pytest.mark.parametrize("name", [CURVATURE, M_WEIGHTED])
+def test_plane_has_no_curvature(name):
     plane = generate("plane", 900, seed=1)
-    values = curvature(plane["positions"], plane["normals"])
+    values = curvature(plane["positions"], plane["normals"], name)
     np.testing.assert_allclose(values["curv_k1"], 0.0, atol=1e-9)
     np.testing.assert_allclose(values["curv_k2"], 0.0, atol=1e-9)
 
@@ -246,17 +279,19 @@ def test_plane_is_no_trouble(name):
         assert np.abs(meshes.current_mesh().vertex_matrix()[:, 2]).max() < 1e-6
 
 
-def test_two_sheets_that_nearly_touch():
+@pytest.mark.parametrize("name", [CURVATURE, M_WEIGHTED])
+def test_two_sheets_that_nearly_touch(name):
     plane = generate("plane", 900, seed=1)
     gap = 0.2 / np.sqrt(900)  # a fifth of the point spacing
     positions = np.vstack([plane["positions"], plane["positions"] + [0.0, 0.0, -gap]])
-    values = curvature(positions, np.vstack([plane["normals"], -plane["normals"]]))
+    values = curvature(positions, np.vstack([plane["normals"], -plane["normals"]]), name)
     np.testing.assert_allclose(values["curv_k1"], 0.0, atol=1e-6)
     np.testing.assert_allclose(values["curv_k2"], 0.0, atol=1e-6)
 
 
-def test_two_sheets_in_the_same_place(torus):
-    values = curvature(np.vstack([torus["positions"]] * 2), np.vstack([torus["normals"], -torus["normals"]]))
+@pytest.mark.parametrize("name", [CURVATURE, M_WEIGHTED])
+def test_two_sheets_in_the_same_place(torus, name):
+    values = curvature(np.vstack([torus["positions"]] * 2), np.vstack([torus["normals"], -torus["normals"]]), name)
     count = len(torus["positions"])
     np.testing.assert_allclose(values["curv_k1"][count:], -values["curv_k2"][:count], atol=1e-9)
     np.testing.assert_allclose(values["curv_k2"][count:], -values["curv_k1"][:count], atol=1e-9)
@@ -324,6 +359,45 @@ def test_hidden_layer_and_selection_change_nothing(torus, name):
     ]
     counts = [{k: v for k, v in c.items() if k != "curvature_reused"} for c in counts]
     assert counts[0] == counts[1]
+
+
+def test_m_weights_of_random_normals_are_finite(torus):
+    normals = RNG.normal(size=torus["normals"].shape)
+    values = curvature(torus["positions"], normals, M_WEIGHTED)
+    assert all(np.all(np.isfinite(values[key])) for key in ATTRIBUTES)
+
+
+def test_fewest_neighbours_with_m_weights(torus):
+    values = curvature(torus["positions"], torus["normals"], M_WEIGHTED, neighbors=6, bandwidth=0.5)
+    assert all(np.all(np.isfinite(values[key])) for key in ATTRIBUTES)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_surfaces_of_points_some_of_which_are_nowhere(torus, value, tmp_path):
+    positions = torus["positions"].copy()
+    positions[::100, 1] = value
+    meshes = layer(positions, torus["normals"])
+    report = meshes.apply_filter(RAY_TRACE, image_file=str(tmp_path / "a.png"), width=60, height=40)
+    assert 0.2 < report["hits"] / 2400 < 0.7
+    report = meshes.apply_filter(PROJECT)
+    assert report["projected"] == len(positions) - len(positions[::100])
+    moved = meshes.current_mesh().vertex_matrix()
+    np.testing.assert_array_equal(moved[::100], positions[::100])
+    assert np.all(np.isfinite(np.delete(moved, np.s_[::100], axis=0)))
+
+
+@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("scale, shift", [(1e-9, 0.0), (1e9, 0.0), (1.0, 1e6)])
+def test_surfaces_of_any_size_and_place(torus, name, scale, shift, tmp_path):
+    given, moved = layer(torus["positions"], torus["normals"]), layer(scale * torus["positions"] + shift, torus["normals"])
+    options = {"image_file": str(tmp_path / "a.png"), "width": 60, "height": 40} if name == RAY_TRACE else {}
+    a, b = given.apply_filter(name, **options), moved.apply_filter(name, **options)
+    if name == RAY_TRACE:
+        assert abs(a["hits"] - b["hits"]) <= 3
+    else:
+        assert a["projected"] == b["projected"]
+        back = (moved.current_mesh().vertex_matrix() - shift) / scale
+        np.testing.assert_allclose(back, given.current_mesh().vertex_matrix(), atol=1e-5)
 
 
 def test_deleted_vertices_are_gone(torus):

@@ -7,7 +7,8 @@ from pathlib import Path
 
 
 CHAIN = """
-import hashlib, helpers
+import hashlib, tempfile, helpers
+from pathlib import Path
 helpers.load_plugin()
 meshes = helpers.layer_of(helpers.generate("torus", 800, noise=0.003, outliers=0.02, seed=1, scanned=True))
 for name, parameters in [
@@ -22,6 +23,15 @@ for name, parameters in [
     meshes.apply_filter(name, **parameters)
     state = repr(helpers.snapshot(meshes)).encode()
     print(name, hashlib.sha256(state).hexdigest())
+meshes = helpers.layer_of(helpers.generate("torus", 2000, noise=0.003, seed=2, scanned=True))
+for name in (helpers.M_WEIGHTED, helpers.PROJECT):
+    meshes.apply_filter(name)
+    print(name, hashlib.sha256(repr(helpers.snapshot(meshes)).encode()).hexdigest())
+for surface in ("Curvature-Driven", "Moving Least Squares"):
+    with tempfile.TemporaryDirectory() as folder:
+        image = Path(folder) / "image.png"
+        meshes.apply_filter(helpers.RAY_TRACE, image_file=str(image), width=120, height=80, surface=surface)
+        print(surface.replace(" ", "_"), hashlib.sha256(image.read_bytes()).hexdigest())
 """
 
 
@@ -41,5 +51,5 @@ def run(threads):
 
 def test_chain_is_the_same_on_one_thread_and_on_two():
     first = run(1)
-    assert len(first) == 7 and len(set(first)) == 7
+    assert len(first) == 11 and len(set(first)) == 11
     assert run(2) == first

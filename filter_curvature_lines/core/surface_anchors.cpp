@@ -28,7 +28,8 @@ constexpr double minAgreement = 0.35; // share of the anchors within half a radi
 constexpr Index  minAnchors   = 30;
 constexpr double linkStretch  = 1.15;
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
-constexpr double faceGain     = 0.9;  // and less than that of one surface
+constexpr double faceGain     = 0.9;  // and less than that of one surface,
+constexpr double clearGain    = 0.6;  // much less somewhere near
 constexpr double faceReach    = 3.0; // radii
 constexpr Index  sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
 constexpr double leastFace    = 0.15; // weight over the largest one's: strays among the anchors have less
@@ -268,8 +269,8 @@ double SurfaceAnchors::jumpBetween(Index a, Index b) const
 }
 
 // The faces continued to those of `misfits` that an edge explains, from every `stride`-th anchor.
-std::vector<SurfaceElement>
-SurfaceAnchors::continuedTo(const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride)
+std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
+	const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride, double gain)
 {
 	const double           reach   = faceReach * m_scale.height.radius;
 	const Eigen::Matrix3Xd origins = m_origins(Eigen::all, misfits);
@@ -291,7 +292,7 @@ SurfaceAnchors::continuedTo(const std::vector<Index>& misfits, const PointSubset
 			return;
 		const double misfit = misfitOfFaces(subsets[m_places[a]], position, faces);
 		if (misfit < faceRatio * m_noise + misfitFloor * m_scale.height.radius &&
-			misfit < faceGain * m_elements[a].residual)
+			misfit < gain * m_elements[a].residual)
 			continued[a] = nearestFace(position, std::move(faces), nullptr);
 	});
 	return continued;
@@ -306,19 +307,19 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets, bool sketch)
 	for (Index a = 0; a < size(); ++a)
 		if (m_misfit[a])
 			misfits.push_back(a);
-	std::vector<SurfaceElement> continued = continuedTo(misfits, subsets, sketchStride);
-	if (!sketch) {
-		std::vector<Index> found, atEdges;
-		for (const Index a : misfits)
-			if (continued[a].valid)
-				found.push_back(a);
-		const Eigen::Matrix3Xd origins = m_origins(Eigen::all, found);
-		const NeighborSearch   foundSearch(origins);
-		for (const Index a : misfits)
-			if (foundSearch.anyWithin(m_origins.col(a), faceReach * m_scale.height.radius))
-				atEdges.push_back(a);
-		continued = continuedTo(atEdges, subsets, 1);
-	}
+	// Noise makes a bend look like an edge here and there; where one is, some balls leave no doubt.
+	const std::vector<SurfaceElement> clear = continuedTo(misfits, subsets, sketchStride, clearGain);
+	std::vector<Index>                found, atEdges;
+	for (const Index a : misfits)
+		if (clear[a].valid)
+			found.push_back(a);
+	const Eigen::Matrix3Xd origins = m_origins(Eigen::all, found);
+	const NeighborSearch   foundSearch(origins);
+	for (const Index a : misfits)
+		if (foundSearch.anyWithin(m_origins.col(a), faceReach * m_scale.height.radius))
+			atEdges.push_back(a);
+	const std::vector<SurfaceElement> continued =
+		continuedTo(atEdges, subsets, sketch ? sketchStride : 1, faceGain);
 	// What an edge spoilt and no face explains, as in a corner, is not used.
 	for (Index a = 0; a < size(); ++a) {
 		const NeighborLists::Row row = m_links[a];

@@ -150,8 +150,8 @@ private:
 	double typicalLink() const;
 	void flagMisfits();
 	void link();
-	std::vector<SurfaceElement>
-		 continuedTo(const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride);
+	std::vector<SurfaceElement> continuedTo(
+		const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride, double gain);
 	void continueFaces(const PointSubsets& subsets, bool sketch);
 	void cutLinks();
 	double offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const;

@@ -21,6 +21,7 @@ std::unique_ptr<const AnalyticSurface> makePlane();
 std::unique_ptr<const AnalyticSurface> makeCappedCylinder();
 std::unique_ptr<const AnalyticSurface> makeLBlock();
 std::unique_ptr<const AnalyticSurface> makeDoubleTorus();
+std::unique_ptr<const AnalyticSurface> makeHalfTorus();
 
 namespace detail {
 

@@ -108,7 +108,8 @@ def reconstruct(positions: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray,
 def torus_mesh() -> str:
     cloud = analytic_surfaces.generate("torus", 20000, seed=1)
     vertices, faces, seconds = reconstruct(cloud["positions"], cloud["normals"])
-    angle = measures.mean_angle_to_principal_directions("torus", vertices, faces)
+    edges = np.array(list(measures.unique_edges(faces)))
+    angle = measures.mean_angle_to_principal_directions("torus", vertices, edges)
     diagonal = analytic_surfaces.surface("torus").diagonal
     distance = 100.0 * measures.distance_to_surface("torus", vertices) / diagonal
     return (

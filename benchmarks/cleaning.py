@@ -9,11 +9,12 @@ import argparse
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+import comparison
 import measures
 from cleaning_clouds import (
     EDGE_ZONE,
@@ -30,7 +31,7 @@ from cleaning_clouds import (
     uneven,
     with_clean_mesh,
 )
-from comparison import Figures, Outcome, Target, best_cell, number, verdict
+from comparison import Case, Column, Figures, Method, Outcome, Target, number, one, verdict
 from fresh_process import cost_of
 from peers.cgal_cleaning import bilateral_smoothing, jet_smoothing, removed_outliers
 from peers.cleaned import Moved, Selection
@@ -44,7 +45,6 @@ TIMED_RUNS = 3
 LARGE_SCAN = "dragon_vrip.ply"
 
 Result = Selection | Moved
-Method = Callable[[Cloud], Result | None]  # None: it crashed
 
 
 @dataclass(frozen=True)
@@ -56,26 +56,6 @@ class Settings:
     @property
     def seeds(self) -> range:
         return range(1, 2 if self.quick else 6)
-
-
-@dataclass(frozen=True)
-class Case:
-    label: str
-    make: Callable[[int], Cloud]  # of a seed
-    targets: dict[str, Target] = field(default_factory=dict)  # of figures
-    quick: bool = False  # also in a quick run
-    one_seed: bool = False
-
-
-@dataclass(frozen=True)
-class Column:
-    """A peer; of several settings (name -> method) the best one is shown, picked for each figure by the truth.
-
-    Methods of the same name in several columns are run once.
-    """
-
-    title: str
-    methods: dict[str, Method]
 
 
 def our_selection(cloud: Cloud) -> Selection:
@@ -90,10 +70,6 @@ def our_denoising(cloud: Cloud) -> Moved:
     start = time.perf_counter()
     meshes.apply_filter(DENOISE)
     return Moved(meshes.current_mesh().vertex_matrix(), time.perf_counter() - start)
-
-
-def one(title: str, method: Method) -> Column:
-    return Column(title, {title: method})
 
 
 def loop_at(probability: float) -> Method:
@@ -177,31 +153,14 @@ def compare(
     peers: Callable[[], list[Column]] | None,
     figures: Callable[[Cloud, Result], Figures],
 ) -> str:
-    columns = peers() if peers and settings.peers else []
-    methods = {"ours": ours} | {name: run for column in columns for name, run in column.methods.items()}
-    rows = []
-    for case in cases:
-        if settings.quick and not case.quick:
-            continue
-        outcomes = {name: Outcome() for name in methods}
-        for seed in [1] if case.one_seed else settings.seeds:
-            print(f"{case.label}, seed {seed}", file=sys.stderr)
-            cloud = case.make(seed)
-            for name, run in methods.items():
-                result = run(cloud)
-                outcomes[name].add(None if result is None else figures(cloud, result))
-        for name in outcomes["ours"].names():
-            target = case.targets.get(name)
-            at_least = name.endswith(("recall", "precision"))
-            mine = outcomes["ours"]
-            row = [case.label, name, number(mine.median(name)), number(mine.worst(name, at_least))]
-            row += verdict(mine.median(name), target)
-            for column in columns:
-                tried = {setting: outcomes[setting] for setting in column.methods}
-                row.append(best_cell(tried, name, at_least) if len(tried) > 1 else tried[column.title].cell(name))
-            rows.append(row)
-    header = ["cloud", "figure", "ours", "worst seed", "must", "aim", "met", *(column.title for column in columns)]
-    return measures.markdown_table(header, rows)
+    return comparison.compare(
+        [case for case in cases if case.quick or not settings.quick],
+        settings.seeds,
+        ours,
+        peers() if peers and settings.peers else [],
+        figures,
+        lambda name: name.endswith(("recall", "precision")),
+    )
 
 
 def selected(recall: tuple[float, float], precision: tuple[float, float] = (0.98, 0.99)) -> dict[str, Target]:

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import measures
+from process_memory import peak_megabytes, reset_peak
 
 
 @dataclass(frozen=True, order=True)
@@ -22,26 +23,19 @@ class Cost:
     megabytes: float  # at the peak, above the host with the cloud loaded
 
 
-def _peak_megabytes() -> float:
-    """Of this process since it was last reset; a child's `ru_maxrss` may be its parent's."""
-    status = Path("/proc/self/status").read_text(encoding="ascii")
-    kilobytes = next(line for line in status.splitlines() if line.startswith("VmHWM")).split()[1]
-    return int(kilobytes) / 1024.0
-
-
-def _cost(cloud: str, filter_name: str, parameters: dict[str, str]) -> Cost:
+def _cost(cloud: str, filter_name: str, parameters: dict[str, object]) -> Cost:
     with np.load(cloud) as given:
         meshes = measures.layer(given["positions"], given["normals"])
     points = meshes.current_mesh().vertex_number()
-    Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
-    loaded = _peak_megabytes()
+    reset_peak()
+    loaded = peak_megabytes()
     wall, processor = time.perf_counter(), time.process_time()
     meshes.apply_filter(filter_name, **parameters)
     wall, processor = time.perf_counter() - wall, time.process_time() - processor
-    return Cost(1e6 * wall / points, 1e6 * processor / points, _peak_megabytes() - loaded)
+    return Cost(1e6 * wall / points, 1e6 * processor / points, peak_megabytes() - loaded)
 
 
-def cost_of(filter_name: str, positions: np.ndarray, normals: np.ndarray, parameters: dict[str, str] | None = None) -> Cost:
+def cost_of(filter_name: str, positions: np.ndarray, normals: np.ndarray, parameters: dict[str, object] | None = None) -> Cost:
     context = multiprocessing.get_context("spawn")
     with tempfile.TemporaryDirectory() as folder, ProcessPoolExecutor(max_workers=1, mp_context=context) as pool:
         cloud = Path(folder) / "cloud.npz"

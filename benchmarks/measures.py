@@ -154,9 +154,8 @@ def topology(faces: list[np.ndarray]) -> Topology:
     )
 
 
-def mean_angle_to_principal_directions(surface: str, vertices: np.ndarray, faces: list[np.ndarray]) -> float:
-    """Degrees between mesh edges and the nearer principal direction at the foot point of their middle."""
-    ends = np.array(list(unique_edges(faces)))
+def mean_angle_to_principal_directions(surface: str, vertices: np.ndarray, ends: np.ndarray) -> float:
+    """Degrees between mesh edges (pairs of vertices) and the nearer principal direction at the foot of their middle."""
     first, second = vertices[ends[:, 0]], vertices[ends[:, 1]]
     truth = analytic_surfaces.project(surface, 0.5 * (first + second))
     edges = second - first

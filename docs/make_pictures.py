@@ -16,9 +16,20 @@ DOCS, OUT = CHECKOUT / "docs", CHECKOUT / "out"
 PANEL = (900, 780)
 RANGE_MAP, ANGEL, DRAGON = "meshlab_lato270_rawscan.ply", "angel_rawscan.obj", "dragon_vrip.ply"
 FANDISK, TWELVE = "fandisk_noise0.3.obj", "twelve_impulsive0.5.obj"
-FANDISK_CLEAN, BUNNY = "fandisk_clean.obj", "bunny_oriented.ply"
+FANDISK_CLEAN = "fandisk_clean.obj"
 TRACED = (1066, 800)
-VIEWS = {FANDISK: ((-0.6, 0.5, 1.0), (0.0, 1.0, 0.0)), TWELVE: ((0.4, 0.3, 1.0), (0.0, 1.0, 0.0))}
+COW, BUNNY, ARMADILLO = "cow_loop2_46433_derived.ply", "bunny_oriented.ply", "armadillo.obj"
+HAND, TOOTH = "hand_closed.obj", "tooth_pongo_EM.ply"
+Y_UP = (0.0, 1.0, 0.0)
+VIEWS = {
+    FANDISK: ((-0.6, 0.5, 1.0), Y_UP),
+    TWELVE: ((0.4, 0.3, 1.0), Y_UP),
+    COW: ((0.6, 0.4, 1.0), Y_UP),
+    BUNNY: ((0.2, 0.2, 1.0), Y_UP),
+    ARMADILLO: ((0.3, 0.2, -1.0), Y_UP),
+    HAND: ((0.2, 0.1, 1.0), Y_UP),
+    TOOTH: ((0.3, -0.7, 1.0), (0.0, 0.0, 1.0)),
+}
 
 
 def write_strips(name: str, rows: list[list[Path]], width: int, few_colors: bool = True) -> None:
@@ -110,6 +121,21 @@ def ray_traced(path: Path) -> list[Path]:
     return pictures
 
 
+def quads(path: Path) -> Path:
+    """The mesh that the whole pipeline makes of the points alone."""
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(path))
+    if meshes.current_mesh().face_number():
+        meshes = loaded(path)
+        forget_triangles(meshes)
+    report = meshes.generate_surface_reconstruction_curvature_aligned()
+    print(f"{path.name}: {report['quads']} of {report['faces']} faces are quads, V - E + F = {report['euler_characteristic']}")
+    view, up = VIEWS.get(path.name, (None, None))
+    picture = OUT / f"{path.stem}_quads.png"
+    render(picture, meshes.current_mesh(), view=view, up=up, size=PANEL)
+    return picture
+
+
 def gallery(folder: Path, topics: list[str]) -> None:
     OUT.mkdir(exist_ok=True)
     if "scans" in topics:
@@ -122,10 +148,13 @@ def gallery(folder: Path, topics: list[str]) -> None:
         write_strips("gallery_ray_tracing", columns, 1500, few_colors=False)
     if "curvature" in topics:
         write_strips("gallery_curvature", [[curvature(folder / name) for name in (RANGE_MAP, ANGEL, DRAGON)]], 1600)
+    if "quads" in topics:
+        rows = [(BUNNY, ARMADILLO, COW), (HAND, TOOTH, ANGEL)]
+        write_strips("gallery_quads", [[quads(folder / name) for name in row] for row in rows], 1800)
 
 
 def main() -> None:
-    topics = ["scans", "meshes", "curvature", "ray_tracing"]
+    topics = ["scans", "meshes", "curvature", "ray_tracing", "quads"]
     parser = argparse.ArgumentParser(description=__doc__)
     kinds = parser.add_subparsers(dest="kind", required=True)
     kinds.add_parser("pipeline", help="from what scripts/demo.sh left in out/")

@@ -25,6 +25,8 @@ const std::map<std::string, SurfacePointer>& registry()
 		s["plane"]           = makePlane();
 		s["l_block"]         = makeLBlock();
 		s["capped_cylinder"] = makeCappedCylinder();
+		s["double_torus"]    = makeDoubleTorus();
+		s["half_torus"]      = makeHalfTorus();
 		return s;
 	}();
 	return surfaces;

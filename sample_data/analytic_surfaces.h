@@ -68,6 +68,8 @@ public:
 // plane       unit square, z = 0, normal +z; open
 // capped_cylinder  radius 0.5, height 1, closed by two discs: circular sharp edges
 // l_block     three cubes of edge 0.5 in an L, in the plane of x and y: 17 convex edges and a concave one
+// double_torus     two tori (R = 0.7, r = 0.3) side by side in the plane of x and y, blended smoothly: genus 2
+// half_torus       the half y >= 0 of the torus; open
 const std::vector<std::string>& surfaceNames();
 // Throws std::invalid_argument for a name not listed above.
 const AnalyticSurface& surface(const std::string& name);

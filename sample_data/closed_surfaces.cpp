@@ -223,20 +223,9 @@ public:
 
 	SurfaceFrame frame(const Vector3d& q) const override
 	{
-		// Shape operator of the level set of sum (x / a)^2: its Hessian in the tangent plane / |gradient|.
-		const Vector3d inverse  = axes().cwiseAbs2().cwiseInverse();
-		const Vector3d gradient = inverse.cwiseProduct(q);
-		const Vector3d n        = gradient.normalized();
-		const Vector3d e1       = n.unitOrthogonal();
-		const Vector3d e2       = n.cross(e1);
-		const double   l        = gradient.norm();
-		const double   a        = e1.dot(inverse.cwiseProduct(e1)) / l;
-		const double   b        = e1.dot(inverse.cwiseProduct(e2)) / l;
-		const double   d        = e2.dot(inverse.cwiseProduct(e2)) / l;
-		const double   mean = 0.5 * (a + d), half = std::hypot(0.5 * (a - d), b);
-		const double   angle = 0.5 * std::atan2(2.0 * b, a - d);
-		return frameOf(
-			n, std::cos(angle) * e1 + std::sin(angle) * e2, mean + half, mean - half);
+		// Level set of sum (x / a)^2.
+		const Vector3d inverse = axes().cwiseAbs2().cwiseInverse();
+		return levelSetFrame(inverse.cwiseProduct(q), inverse.asDiagonal());
 	}
 
 	Vector3d sample(Random& random) const override

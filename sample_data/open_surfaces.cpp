@@ -1,4 +1,4 @@
-// Cylinder, helicoid, bent sheet and plane: closest points, curvature frames, samplings, rims.
+// Cylinder, helicoid, half torus, bent sheet and plane: closest points, curvature frames, samplings, rims.
 // Textbook differential geometry (do Carmo), with the sign turned so that convex is positive.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface_families.h"
@@ -262,7 +262,53 @@ private:
 	static constexpr double half = 0.5;
 };
 
+// Half a torus, y >= 0: a bent pipe that ends in two meridians.
+class HalfTorus final : public AnalyticSurface {
+public:
+	AlignedBox3d boundingBox() const override { return {Vector3d(-R - r, 0.0, -r), Vector3d(R + r, R + r, r)}; }
+	int          eulerCharacteristic() const override { return 0; }
+	bool         closed() const override { return false; }
+
+	Vector3d project(const Vector3d& p) const override
+	{
+		if (p.y() >= 0.0)
+			return m_torus->project(p);
+		return m_torus->project({p.x(), 0.0, p.z()});
+	}
+
+	SurfaceFrame frame(const Vector3d& q) const override { return m_torus->frame(q); }
+
+	// Along the parallel, the shortest way where it is short.
+	double rimDistance(const Vector3d& q) const override
+	{
+		return std::hypot(q.x(), q.y()) * std::atan2(std::max(q.y(), 0.0), std::abs(q.x()));
+	}
+
+	Vector3d sample(Random& random) const override
+	{
+		const Vector3d p = m_torus->sample(random);
+		return {p.x(), std::abs(p.y()), p.z()};
+	}
+
+	Matrix3Xd grid(int points) const override
+	{
+		return parameterGrid(points, 0.5 * R / r, false, true, [](double s, double t) {
+			const double w = R + r * std::cos(2.0 * pi * t);
+			return Vector3d(w * std::cos(pi * s), w * std::sin(pi * s), r * std::sin(2.0 * pi * t));
+		});
+	}
+
+private:
+	static constexpr double                      R = 1.0, r = 0.4; // as of the whole torus
+	const std::unique_ptr<const AnalyticSurface> m_torus = makeTorus();
+};
+
 } // namespace
+
+std::unique_ptr<const AnalyticSurface> makeHalfTorus()
+{
+	return std::make_unique<HalfTorus>();
+}
 
 std::unique_ptr<const AnalyticSurface> makeCylinder()
 {

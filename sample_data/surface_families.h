@@ -20,6 +20,8 @@ std::unique_ptr<const AnalyticSurface> makeBentSheet();
 std::unique_ptr<const AnalyticSurface> makePlane();
 std::unique_ptr<const AnalyticSurface> makeCappedCylinder();
 std::unique_ptr<const AnalyticSurface> makeLBlock();
+std::unique_ptr<const AnalyticSurface> makeDoubleTorus();
+std::unique_ptr<const AnalyticSurface> makeHalfTorus();
 
 namespace detail {
 
@@ -34,6 +36,18 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 inline SurfaceFrame frameOf(const Vector3d& normal, const Vector3d& d1, double k1, double k2)
 {
 	return {normal, d1, normal.cross(d1), k1, k2};
+}
+
+// Of the level set of a function that grows outward: its Hessian in the tangent plane over its gradient.
+inline SurfaceFrame levelSetFrame(const Vector3d& gradient, const Eigen::Matrix3d& hessian)
+{
+	const double   l  = gradient.norm();
+	const Vector3d n  = gradient / l;
+	const Vector3d e1 = n.unitOrthogonal(), e2 = n.cross(e1);
+	const double   a = e1.dot(hessian * e1) / l, b = e1.dot(hessian * e2) / l, d = e2.dot(hessian * e2) / l;
+	const double   mean = 0.5 * (a + d), half = std::hypot(0.5 * (a - d), b);
+	const double   angle = 0.5 * std::atan2(2.0 * b, a - d);
+	return frameOf(n, std::cos(angle) * e1 + std::sin(angle) * e2, mean + half, mean - half);
 }
 
 inline AlignedBox3d boxAround(const Vector3d& half)

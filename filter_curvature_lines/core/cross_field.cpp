@@ -23,6 +23,8 @@ constexpr double sureErrors = 3.0; // k1 - k2 below so many standard errors tell
 // is, the less, down to a third of a cell.
 constexpr double cellErrors = 15.0;
 constexpr double mostTrust  = 10.0;
+// What errors leave out, such as corners nearby: a difference no estimate tells from flat, over the diagonal.
+constexpr double leastError = 0.02;
 constexpr double leastRatio =
 	0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
 constexpr double regularization  = 1e-9;
@@ -194,7 +196,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 		guide.directions.col(v) = curvature.d1.col(i);
 		const double difference = curvature.k1[i] - curvature.k2[i];
 		const double size       = curvedness(curvature.k1[i], curvature.k2[i]);
-		const double sure       = difference / (curvature.error[i] + 1e-12 * size + 1e-300);
+		const double sure       = difference / (curvature.error[i] + leastError);
 		if (curvature.status[i] == PointStatus::TooFewNeighbors || difference < leastRatio * size ||
 			sure < sureErrors)
 			continue;

@@ -78,6 +78,8 @@ public:
 	}
 	double error(Index i, Index j) const { return pieceError(i, j) + pieceError(j, i); }
 
+	double distance(Index i, Index j) const { return (m_points[i] - m_points[j]).norm(); }
+
 	double leastAngleAt(Index i, Index j) const
 	{
 		return std::min(
@@ -145,7 +147,8 @@ std::uint64_t PolygonSplitter::key(Index a, Index b)
 }
 
 template<class Error>
-PolygonSplitter::Cut PolygonSplitter::bestCut(const Face& face, const Error& error) const
+PolygonSplitter::Cut
+PolygonSplitter::bestCut(const Face& face, const Error& error, Diagonals diagonals) const
 {
 	const FlatPolygon flat(face, m_vertices, m_normals);
 	Cut               best;
@@ -155,7 +158,7 @@ PolygonSplitter::Cut PolygonSplitter::bestCut(const Face& face, const Error& err
 			if ((i == 0 && j == flat.size() - 1) || isEdge(face[i], face[j]))
 				continue;
 			const double e = error(flat, i, j);
-			if (e < best.error && flat.isDiagonalInside(i, j))
+			if (e < best.error && (diagonals == Diagonals::Any || flat.isDiagonalInside(i, j)))
 				best = {i, j, e};
 		}
 	}
@@ -174,7 +177,7 @@ bool PolygonSplitter::cut(const Face& face, const Cut& cut, Face& first, Face& s
 }
 
 template<class Error>
-void PolygonSplitter::cutWhileAny(const Error& error)
+void PolygonSplitter::cutWhileAny(const Error& error, Diagonals diagonals)
 {
 	std::vector<Face> pending, done;
 	pending.swap(m_faces);
@@ -183,7 +186,7 @@ void PolygonSplitter::cutWhileAny(const Error& error)
 		const Face face = std::move(pending.back());
 		pending.pop_back();
 		Face first, second;
-		if (cut(face, bestCut(face, error), first, second)) {
+		if (cut(face, bestCut(face, error, diagonals), first, second)) {
 			pending.push_back(std::move(second));
 			pending.push_back(std::move(first));
 		}
@@ -213,8 +216,10 @@ void PolygonSplitter::splitConcaveFaces()
 void PolygonSplitter::triangulate()
 {
 	cutWhileAny([](const FlatPolygon& flat, Index i, Index j) { return -flat.leastAngleAt(i, j); });
-	// What no diagonal can cut, as when each is an edge elsewhere, becomes a star about a new
-	// vertex.
+	// Slivers and faces folded over have no diagonal inside.
+	cutWhileAny(
+		[](const FlatPolygon& flat, Index i, Index j) { return flat.distance(i, j); }, Diagonals::Any);
+	// What no diagonal can cut because each is an edge elsewhere becomes a star about a new vertex.
 	const std::size_t count = m_faces.size();
 	for (std::size_t f = 0; f < count; ++f) {
 		const Face face = m_faces[f];

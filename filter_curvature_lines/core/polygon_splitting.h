@@ -27,11 +27,12 @@ private:
 		Index  i = -1, j = -1; // corners of the face
 		double error = 0.0;
 	};
+	enum class Diagonals { Inside, Any };
 	// The cheapest cut among the corner pairs that `error` gives a finite cost.
 	template<class Error>
-	Cut bestCut(const Face& face, const Error& error) const;
+	Cut bestCut(const Face& face, const Error& error, Diagonals = Diagonals::Inside) const;
 	template<class Error>
-	void                 cutWhileAny(const Error& error);
+	void                 cutWhileAny(const Error& error, Diagonals = Diagonals::Inside);
 	bool                 cut(const Face& face, const Cut& cut, Face& first, Face& second);
 	bool                 isEdge(Index a, Index b) const { return m_edges.count(key(a, b)) != 0; }
 	static std::uint64_t key(Index a, Index b);

@@ -20,7 +20,7 @@ constexpr double countTolerance = 0.03; // beyond, the density is corrected once
 constexpr double closedRim      = 12.0; // edges of the mesh, as of traced lines
 
 struct Traced {
-	SurfaceArrangement arrangement;
+	SurfaceArrangement arrangement; // its mesh cleaned up
 	Index              lineEnds = 0;
 };
 
@@ -34,10 +34,12 @@ Traced trace(
 {
 	const PositionField positions =
 		positionField(scaffold.mesh, field, density, pins, options.phases);
-	return {
+	Traced traced = {
 		arrangeOnSurface(
 			scaffold.mesh, field.normals, features, integerLines(scaffold.mesh, field, positions)),
 		positions.lineEnds};
+	traced.arrangement.mesh = cleanUpQuads(traced.arrangement.mesh, traced.arrangement.onFeature);
+	return traced;
 }
 
 void projectVertices(
@@ -115,8 +117,8 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	result.droppedComponents += traced.arrangement.lostComponents;
 	progress.report(0.9);
 
-	std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
-	result.mesh                 = cleanUpQuads(traced.arrangement.mesh, onFeature);
+	const std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
+	result.mesh                       = std::move(traced.arrangement.mesh);
 	if (options.mesh.splitConcave) {
 		PolygonSplitter splitter(result.mesh);
 		splitter.splitConcaveFaces();

@@ -1,4 +1,4 @@
-// Strips between irregular faces, found by walking through opposite sides of quads.
+// Strips from irregular faces, found by walking through opposite sides of quads.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quad_cleanup.h"
 
@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "polygon_splitting.h"
+#include "rim_cleanup.h"
 
 namespace curvature_lines {
 
@@ -23,8 +24,9 @@ struct Gate { // a face entered through its side `side`, from corner `side` to t
 };
 
 struct Strip {
-	std::vector<Gate>
-		path; // the side every face but the last is left through; the last is entered through
+	// The side every face is left through; but of the last one, unless at a rim, that it is entered through.
+	std::vector<Gate> path;
+	bool              endsAtRim = false;
 };
 
 class StripFinder {
@@ -51,10 +53,19 @@ public:
 		return found;
 	}
 
-	// Of a pentagon: the side opposite its flattest corner.
+	// Of a pentagon: its side on a rim, or the one opposite its flattest corner.
 	Index splitSide(Index f) const
 	{
-		const Face& face     = m_faces[f];
+		const Face& face = m_faces[f];
+		Index       rims = 0, rim = -1;
+		for (Index k = 0; k < 5; ++k) {
+			if (behind({f, k}) != m_sides.end())
+				continue;
+			++rims;
+			rim = k;
+		}
+		if (rims == 1)
+			return rim;
 		Index       flattest = 0;
 		double      least    = 2.0;
 		for (Index k = 0; k < 5; ++k) {
@@ -70,7 +81,14 @@ public:
 	}
 
 private:
+	using Sides = std::unordered_map<std::uint64_t, Gate>;
+
 	Index                sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
+	Sides::const_iterator behind(const Gate& g) const
+	{
+		const Face& face = m_faces[g.face];
+		return m_sides.find(key(face[(g.side + 1) % face.size()], face[g.side]));
+	}
 	static std::uint64_t key(Index a, Index b)
 	{
 		return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
@@ -81,10 +99,14 @@ private:
 		Strip strip;
 		for (Index quads = 0; quads <= longest;) {
 			strip.path.push_back(at);
-			const Face& face = m_faces[at.face];
-			const auto  next = m_sides.find(key(face[(at.side + 1) % face.size()], face[at.side]));
-			if (next == m_sides.end())
+			const auto next = behind(at);
+			if (next == m_sides.end()) {
+				// A triangle at the rim itself would get a flat corner.
+				strip.endsAtRim = true;
+				if (strip.path.size() > 1 || sizeOf(at.face) == 5)
+					found.push_back(std::move(strip));
 				return;
+			}
 			const Gate in   = next->second;
 			const auto seen = [&](const Gate& g) { return g.face == in.face; };
 			if (std::any_of(strip.path.begin(), strip.path.end(), seen))
@@ -102,9 +124,9 @@ private:
 		}
 	}
 
-	const std::vector<Face>&                m_faces;
-	const std::vector<Vector3d>&            m_vertices;
-	std::unordered_map<std::uint64_t, Gate> m_sides; // by their two vertices, in order
+	const std::vector<Face>&     m_faces;
+	const std::vector<Vector3d>& m_vertices;
+	Sides                        m_sides; // by their two vertices, in order
 };
 
 // The parts of the face at the end of a strip, whose side `side` gets vertex m in its middle.
@@ -155,15 +177,17 @@ PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, 
 				used[gate.face] = 1;
 			Index m = middle(faces[path[0].face], path[0].side);
 			splitEnd(faces[path[0].face], path[0].side, m, parts[path[0].face]);
-			for (std::size_t k = 1; k + 1 < path.size(); ++k) {
+			const std::size_t last = path.size() - (strip.endsAtRim ? 0 : 1);
+			for (std::size_t k = 1; k < last; ++k) {
 				const Face& q   = faces[path[k].face];
 				const Index out = path[k].side, in = (out + 2) % 4;
-				const Index last = m;
-				m                = middle(q, out);
-				parts[path[k].face].push_back({q[in], last, m, q[(in + 3) % 4]});
-				parts[path[k].face].push_back({last, q[(in + 1) % 4], q[out], m});
+				const Index before = m;
+				m                  = middle(q, out);
+				parts[path[k].face].push_back({q[in], before, m, q[(in + 3) % 4]});
+				parts[path[k].face].push_back({before, q[(in + 1) % 4], q[out], m});
 			}
-			splitEnd(faces[path.back().face], path.back().side, m, parts[path.back().face]);
+			if (!strip.endsAtRim)
+				splitEnd(faces[path.back().face], path.back().side, m, parts[path.back().face]);
 		}
 		std::vector<Face> next;
 		for (std::size_t f = 0; f < faces.size(); ++f)
@@ -194,7 +218,9 @@ PolygonMesh cleanUpQuads(
 		splitter.pairWithPentagons();
 		return splitter.mesh();
 	};
-	return cut(insertStrips(cut(mesh), onFeature, options.longestStrip));
+	const PolygonMesh merged = mergeRimTriangles(mesh, onFeature, options.shortestRimEdge);
+	const PolygonMesh strips = cut(insertStrips(cut(merged), onFeature, options.longestStrip));
+	return mergeRimTriangles(strips, onFeature, options.longestRimEdge);
 }
 
 } // namespace curvature_lines

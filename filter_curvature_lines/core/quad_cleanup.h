@@ -1,5 +1,6 @@
 // Fewer faces that are no quads. Lines that end leave pentagons, umbilics triangles; pairs of them vanish
-// together, with a strip of quads between them split along. Every step keeps V - E + F.
+// together, with a strip of quads between them split along; near a rim the strip ends there. Every step keeps
+// V - E + F.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -8,16 +9,20 @@
 namespace curvature_lines {
 
 struct QuadCleanupOptions {
-	Index longestStrip = 3; // quads between the two
+	Index longestStrip = 3; // quads between the two, or to the rim
+	// Rim edges of triangles, in edges nearby: shorter ones vanish, longer ones only if the triangle finds no
+	// pentagon.
+	double shortestRimEdge = 0.25, longestRimEdge = 1.0;
 };
 
-// Cuts large faces, joins triangles with pentagons, and inserts strips. `onFeature` marks the vertices on
-// rims and creases and grows with the mesh.
+// Cuts large faces, joins triangles with pentagons, inserts strips, and merges the ends of lines at rims.
+// `onFeature` marks the vertices on rims and creases and changes with the mesh.
 PolygonMesh cleanUpQuads(
 	const PolygonMesh& mesh, std::vector<char>& onFeature, const QuadCleanupOptions& options = {});
 
 // A pentagon is taken through the side opposite its flattest corner, a triangle through any side, on through
-// opposite sides of quads until another one: the strip is split in two along its middle. Shortest first.
+// opposite sides of quads until another one or a rim: the strip is split in two along its middle. A pentagon with
+// one side on a rim is taken through that. Shortest first.
 PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, Index longestStrip);
 
 } // namespace curvature_lines

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "advancing_front.h"
+#include "crease_recovery.h"
 #include "neighborhoods.h"
 #include "quantile.h"
 #include "shuffled_order.h"
@@ -34,7 +35,7 @@ constexpr double creaseStep     = 0.93;
 constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
 constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
 constexpr int    attempts       = 3;
-constexpr Index  rimFlaws       = 5;       // a rim counts as so many defects
+constexpr Index  rimFlaws       = 5;       // a rim or a handle counts as so many defects
 constexpr double toleratedDefects = 0.002; // per vertex
 
 double spacingOf(const PointSample& sample)
@@ -304,6 +305,7 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 		fillRim(rim, sites, triangles);
 	}
 	scaffold.defects += scaffold.filledHoles;
+	recoverCreaseEdges(sites.points, sites.creaseEdges, triangles);
 
 	std::vector<Index> nameOf;
 	scaffold.mesh = compact(sites, std::move(triangles), nameOf);
@@ -322,6 +324,16 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 			scaffold.creaseEdge[edge] = 1;
 	}
 	return scaffold;
+}
+
+// Per vertex: a coarse attempt has fewer of everything. True rims and handles are in every attempt, false ones are
+// not.
+double flawsOf(const Scaffold& scaffold)
+{
+	const auto  rims    = static_cast<Index>(scaffold.mesh.rims().size());
+	const Index handles = (2 * scaffold.components - scaffold.mesh.eulerCharacteristic() - rims) / 2;
+	const Index flaws   = scaffold.defects + scaffold.lostCreaseEdges + rimFlaws * (rims + handles);
+	return double(flaws) / std::max<Index>(1, scaffold.mesh.vertexCount());
 }
 
 } // namespace
@@ -355,15 +367,13 @@ Scaffold buildScaffold(
 				 : 0.0;
 
 	Scaffold best;
-	Index    fewest   = 0;
+	double   fewest   = 0.0;
 	double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
 	for (int k = 0; k < attempts; ++k, distance *= coarser) {
 		progress.report(double(k) / attempts);
 		Scaffold next = attempt(
 			chooseSites(sample, order, creases, distance, options), distance, cell, options);
-		// True rims are in every attempt, false ones are not.
-		const Index flaws = next.defects + next.lostCreaseEdges +
-							rimFlaws * static_cast<Index>(next.mesh.rims().size());
+		const double flaws = flawsOf(next);
 		if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
 			best   = std::move(next);
 			fewest = flaws;

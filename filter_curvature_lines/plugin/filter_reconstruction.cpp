@@ -155,6 +155,7 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 	results.count("cones", result.mesh.singularTriangles);
 	results.count("line_ends", result.mesh.lineEnds);
 	results.count("scaffold_vertices", result.mesh.scaffoldVertices);
+	results.count("lost_crease_edges", result.mesh.lostCreaseEdges);
 	results.count("filled_holes", result.mesh.filledHoles);
 	results.count("dropped_components", result.mesh.droppedComponents);
 	results.count("repaired_components", result.mesh.repairedComponents);

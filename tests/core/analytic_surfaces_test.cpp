@@ -309,6 +309,40 @@ TEST(AnalyticSurfaces, TotalCurvatureIsTheEulerCharacteristic)
 	}
 }
 
+// The same where no formula gives the area: the shell within h of the surface has the volume
+// 2 h area (1 + h^2 / 3 times the mean of k1 k2).
+TEST(AnalyticSurfaces, TotalCurvatureOfTheDoubleTorusIsThatOfGenusTwo)
+{
+	constexpr double          h       = 0.03;
+	constexpr int             points  = 60000;
+	const AnalyticSurface&    shape   = surface("double_torus");
+	const Eigen::AlignedBox3d box     = shape.boundingBox();
+	const Vector3d            margin  = Vector3d::Constant(h);
+	const Eigen::AlignedBox3d around(box.min() - margin, box.max() + margin);
+	Random                    random(3, 0);
+	int                       near = 0;
+	for (int i = 0; i < points; ++i) {
+		const Vector3d share(random.uniform(), random.uniform(), random.uniform());
+		const Vector3d p = around.min() + around.sizes().cwiseProduct(share);
+		near += (shape.project(p) - p).norm() < h;
+	}
+	const SampleCloud c     = cleanCloud("double_torus", 40000);
+	const double      mean  = c.k1.dot(c.k2) / 40000.0;
+	const double      shell = around.volume() * near / points;
+	const double      area  = shell / (2.0 * h) / (1.0 + h * h / 3.0 * mean);
+	EXPECT_NEAR(mean * area / (2.0 * pi), shape.eulerCharacteristic(), 0.2);
+}
+
+// Every part of the surface by itself, so that a sampler that prefers a side cannot pass.
+TEST(AnalyticSurfaces, TheDoubleTorusIsSampledSymmetrically)
+{
+	std::vector<int>  counts(8, 0);
+	const SampleCloud c = cleanCloud("double_torus", 40000);
+	for (Eigen::Index i = 0; i < c.positions.cols(); ++i)
+		++counts[(c.positions(0, i) > 0.0) + 2 * (c.positions(1, i) > 0.0) + 4 * (c.positions(2, i) > 0.0)];
+	EXPECT_LT(chiSquare(counts, std::vector<double>(8, 1.0)), 24.3); // 7 degrees of freedom, probability 0.001
+}
+
 TEST(AnalyticSurfaces, RegularCloudsOfThePapersHaveTheirSizes)
 {
 	SampleRequest request;

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections.abc import Callable
@@ -15,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import comparison
+import experiments
 import measures
 from cleaning_clouds import (
     EDGE_ZONE,
@@ -406,31 +406,10 @@ def introduction(settings: Settings) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help=", ".join(EXPERIMENTS))
-    parser.add_argument("--quick", action="store_true", help="one seed and fewer clouds, to the screen")
-    parser.add_argument("--without-peers", action="store_true", help="only ours")
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help=f"where {LARGE_SCAN} and the noisy meshes are")
-    given = parser.parse_args()
-    for name in given.experiments:
-        if name not in EXPERIMENTS:
-            parser.error(f"no experiment is called {name}")
+    parser = experiments.parser_of(EXPERIMENTS, __doc__, f"where {LARGE_SCAN} and the noisy meshes are")
+    given = experiments.parse(parser, EXPERIMENTS)
     settings = Settings(quick=given.quick, peers=not given.without_peers, data=given.data)
-    to_screen = bool(given.experiments) or given.quick
-    sections = []
-
-    def add(section: str) -> None:
-        sections.append(section)
-        if to_screen:
-            print(section, flush=True)
-
-    add(introduction(settings))
-    for title, run in (EXPERIMENTS[name] for name in given.experiments or EXPERIMENTS):
-        add(f"## {title}\n\n{run(settings)}")
-    if not to_screen:
-        options = {" --data FOLDER": given.data, " --without-peers": given.without_peers}
-        command = "cleaning.py" + "".join(option for option, used in options.items() if used)
-        measures.write_result("cleaning", command, "Cleaning", "\n".join(sections))
+    experiments.report("cleaning", "Cleaning", introduction(settings), EXPERIMENTS, settings, given)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+import experiments
 import measures
 from comparison import Figures, Outcome, Target, best_cell, number, verdict
 from fresh_process import cost_of
@@ -430,34 +430,17 @@ def introduction(settings: Settings) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help=", ".join(EXPERIMENTS))
-    parser.add_argument("--quick", action="store_true", help="one seed and fewer clouds, to the screen")
-    parser.add_argument("--without-peers", action="store_true", help="only ours")
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help=f"where {LARGE_SCAN} is, for the peak memory")
+    parser = experiments.parser_of(EXPERIMENTS, __doc__, f"where {LARGE_SCAN} is, for the peak memory")
     parser.add_argument("--scale-mode", help="of our filter, instead of its default")
-    given = parser.parse_args()
-    for name in given.experiments:
-        if name not in EXPERIMENTS:
-            parser.error(f"no experiment is called {name}")
+    given = experiments.parse(parser, EXPERIMENTS)
     settings = Settings(
         quick=given.quick,
         peers=not given.without_peers,
         data=given.data,
         parameters={"scale_mode": given.scale_mode} if given.scale_mode else {},
     )
-    chosen = [EXPERIMENTS[name] for name in given.experiments or EXPERIMENTS]
-    sections = [introduction(settings), *(f"## {title}\n\n{run(settings)}" for title, run in chosen)]
-    if given.experiments or given.quick:
-        print("\n".join(sections))
-    else:
-        options = {
-            " --data FOLDER": given.data,
-            f" --scale-mode {given.scale_mode}": given.scale_mode,
-            " --without-peers": given.without_peers,
-        }
-        command = "curvature.py" + "".join(option for option, used in options.items() if used)
-        measures.write_result("curvature", command, "Curvature", "\n".join(sections))
+    further = f" --scale-mode {given.scale_mode}" if given.scale_mode else ""
+    experiments.report("curvature", "Curvature", introduction(settings), EXPERIMENTS, settings, given, further)
 
 
 if __name__ == "__main__":

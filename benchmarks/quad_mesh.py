@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import importlib.util
 import sys
 import time
@@ -17,6 +16,7 @@ import numpy as np
 import pymeshlab
 
 import comparison
+import experiments
 import measures
 from comparison import Case, Column, Figures, Method, Target, one
 from fresh_process import cost_of
@@ -353,36 +353,12 @@ def introduction(settings: Settings) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help=", ".join(EXPERIMENTS))
-    parser.add_argument("--quick", action="store_true", help="one seed and fewer clouds, to the screen")
-    parser.add_argument("--without-peers", action="store_true", help="only ours")
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help="where the scans are")
+    parser = experiments.parser_of(EXPERIMENTS, __doc__, "where the scans are")
     parser.add_argument("--seeds", type=int, default=5, metavar="N", help="seeds 1 to N of every cloud (default: 5)")
-    given = parser.parse_args()
-    for name in given.experiments:
-        if name not in EXPERIMENTS:
-            parser.error(f"no experiment is called {name}")
+    given = experiments.parse(parser, EXPERIMENTS)
     settings = Settings(given.quick, not given.without_peers, given.data, max(1, given.seeds))
-    to_screen = bool(given.experiments) or given.quick
-    sections = []
-
-    def add(section: str) -> None:
-        sections.append(section)
-        if to_screen:
-            print(section, flush=True)
-
-    add(introduction(settings))
-    for title, run in (EXPERIMENTS[name] for name in given.experiments or EXPERIMENTS):
-        add(f"## {title}\n\n{run(settings)}")
-    if not to_screen:
-        options = {
-            " --data FOLDER": given.data,
-            " --without-peers": given.without_peers,
-            f" --seeds {given.seeds}": given.seeds != 5,
-        }
-        command = "quad_mesh.py" + "".join(option for option, used in options.items() if used)
-        measures.write_result("quad_mesh", command, "Quad meshes", "\n".join(sections))
+    further = f" --seeds {given.seeds}" if given.seeds != 5 else ""
+    experiments.report("quad_mesh", "Quad meshes", introduction(settings), EXPERIMENTS, settings, given, further)
 
 
 if __name__ == "__main__":

@@ -76,6 +76,7 @@ public:
 					m_subsets,
 					scale.height.radius,
 					Degrees::only(scale.height.degree),
+					AnchorDetail::Full,
 					Zone{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
 				m_subsets,
 				scale,

@@ -40,7 +40,7 @@ constexpr Index  minComponent = 128; // probes of a component that is a cloud of
 constexpr double medianOfChi2 = 0.79;  // over the mean, of three squares
 constexpr Index  poolStride     = 4; // pools of neighbouring probes hardly differ
 constexpr Index  hopelessStride = 32;
-constexpr double hopelessRatio  = 16.0;
+constexpr double hopelessRatio  = 4.0; // the next finer level varies about five times as much
 constexpr double surelyErrors   = 2.0; // standard errors: a bias of more is certain
 constexpr int    biasLevels     = 3; // finer ones it takes to know a bias
 constexpr double switchRatio   = 0.5;
@@ -413,7 +413,7 @@ private:
 		}
 		AnchorFits anchorFits;
 		if (ofAnchors.quadric || ofAnchors.quartic)
-			anchorFits = fitAnchors(half, subsets, radius, ofAnchors);
+			anchorFits = fitAnchors(half, subsets, radius, ofAnchors, AnchorDetail::Sketch);
 		for (Trial& trial : trials) {
 			const int                   degree = trial.scale.height.degree;
 			std::vector<SurfaceElement> starts(probes);
@@ -425,7 +425,7 @@ private:
 			std::unique_ptr<const SurfaceAnchors> anchors;
 			if (trial.scale.normalRadius > 0.0 && (degree == 2 ? ofAnchors.quadric : ofAnchors.quartic))
 				anchors = std::make_unique<const SurfaceAnchors>(
-					anchorFits, subsets, trial.scale, m_noise, true);
+					anchorFits, subsets, trial.scale, m_noise, AnchorDetail::Sketch);
 			trial.halves[h] = estimateProbes(anchors.get(), starts, m_positions, trial.scale);
 		}
 	}

@@ -16,6 +16,7 @@ namespace curvature_lines {
 namespace {
 
 constexpr double anchorSpacing   = 0.18; // in radii
+constexpr double sketchSpacing   = 0.22;
 constexpr int    anchorIterations = 2;
 constexpr double largestHeight    = 0.4;  // radii, of the plane through a ball above its centre
 constexpr Index  countedAnchors  = 40;
@@ -118,9 +119,11 @@ AnchorFits fitAnchors(
 	const PointSubsets& subsets,
 	double              radius,
 	Degrees             degrees,
+	AnchorDetail        detail,
 	const Zone&         zone)
 {
-	const std::vector<Index> kept = thin(sample, anchorSpacing * radius);
+	const double spacing = detail == AnchorDetail::Sketch ? sketchSpacing : anchorSpacing;
+	const std::vector<Index> kept = thin(sample, spacing * radius);
 	std::vector<Index>       placeOf(sample.cloud.size(), -1);
 	for (std::size_t place = 0; place < kept.size(); ++place)
 		placeOf[kept[place]] = static_cast<Index>(place);
@@ -157,7 +160,7 @@ SurfaceAnchors::SurfaceAnchors(
 	const PointSubsets&   subsets,
 	const CurvatureScale& scale,
 	double                noise,
-	bool                  sketch) :
+	AnchorDetail          detail) :
 		m_scale(scale), m_hasOutliers(fits.hasOutliers), m_noise(noise)
 {
 	std::vector<Index> valid;
@@ -179,7 +182,7 @@ SurfaceAnchors::SurfaceAnchors(
 	flagMisfits();
 	if (m_hasEdges) {
 		link();
-		continueFaces(subsets, sketch);
+		continueFaces(subsets, detail);
 	}
 	if (m_hasEdges)
 		cutLinks();
@@ -277,8 +280,9 @@ std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
 	const NeighborSearch   misfitSearch(origins);
 	m_faces.assign(size(), {});
 	parallelFor(size(), {}, [&](Index a) {
+		// Faces are asked for where an edge may be near: up to a radius and a link from the misfits.
 		if (m_misfit[a] || m_places[a] % stride != 0 ||
-			!misfitSearch.anyWithin(m_origins.col(a), 2.0 * reach))
+			!misfitSearch.anyWithin(m_origins.col(a), reach + 1.5 * m_scale.height.radius))
 			return;
 		m_faces[a] = m_scale.normalRadius > 0.0 ? normalField(m_elements[a]) : m_elements[a];
 	});
@@ -299,7 +303,7 @@ std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
 }
 
 // Before misfits have a face of their own, they separate the faces: links to them do not count.
-void SurfaceAnchors::continueFaces(const PointSubsets& subsets, bool sketch)
+void SurfaceAnchors::continueFaces(const PointSubsets& subsets, AnchorDetail detail)
 {
 	m_search = std::make_unique<NeighborSearch>(m_surface.positions);
 	m_atCut  = m_misfit;
@@ -319,7 +323,7 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets, bool sketch)
 		if (foundSearch.anyWithin(m_origins.col(a), faceReach * m_scale.height.radius))
 			atEdges.push_back(a);
 	const std::vector<SurfaceElement> continued =
-		continuedTo(atEdges, subsets, sketch ? sketchStride : 1, faceGain);
+		continuedTo(atEdges, subsets, detail == AnchorDetail::Sketch ? sketchStride : 1, faceGain);
 	// What an edge spoilt and no face explains, as in a corner, is not used.
 	for (Index a = 0; a < size(); ++a) {
 		const NeighborLists::Row row = m_links[a];

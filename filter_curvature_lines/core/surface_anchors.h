@@ -68,12 +68,17 @@ struct AnchorFits {
 	bool                    hasOutliers = false;
 };
 
+// How dense anchors are, and how many of them say where the faces of an edge are. A sketch is enough to judge a
+// scale by, not to build on.
+enum class AnchorDetail { Full, Sketch };
+
 AnchorFits fitAnchors(
 	const PointSample&  sample,
 	const PointSubsets& subsets,
 	double              radius,
 	Degrees             degrees,
-	const Zone&         zone = {});
+	AnchorDetail        detail = AnchorDetail::Full,
+	const Zone&         zone   = {});
 
 // How to estimate the shape operator: a height polynomial at radius height.radius, then, unless
 // normalRadius is 0, a cubic polynomial of the normals of anchors within normalRadius.
@@ -98,13 +103,12 @@ struct EdgeNearby {
 // anchors whose balls hold one face only, and normals are never fitted across.
 class SurfaceAnchors {
 public:
-	// A sketch has its faces from some of the anchors: enough to judge a scale by, not to build on.
 	SurfaceAnchors(
 		const AnchorFits&     fits,
 		const PointSubsets&   subsets,
 		const CurvatureScale& scale,
 		double                noise, // of the heights (length)
-		bool                  sketch = false);
+		AnchorDetail          detail = AnchorDetail::Full);
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
 	const std::vector<SurfaceElement>& elements() const { return m_elements; }
@@ -152,7 +156,7 @@ private:
 	void link();
 	std::vector<SurfaceElement> continuedTo(
 		const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride, double gain);
-	void continueFaces(const PointSubsets& subsets, bool sketch);
+	void continueFaces(const PointSubsets& subsets, AnchorDetail detail);
 	void cutLinks();
 	double offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const;
 	double jumpBetween(Index a, Index b) const;

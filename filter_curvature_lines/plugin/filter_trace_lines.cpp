@@ -167,8 +167,9 @@ FilterSpec traceLinesFilter()
 			"<br><br><b>Writes</b> a new layer <i>lines of curvature</i> of vertices and edges, "
 			"and "
 			"makes it current: normals, quality (the curvature along the line), colour (orange "
-			"along PD1, blue along PD2) and the vertex attributes <tt>line_id</tt> and "
-			"<tt>line_family</tt> (1 or 2). <i>Build Curvature-Aligned Quad Mesh</i> goes on from "
+			"along PD1, blue along PD2) and the vertex attributes <tt>line_id</tt>, "
+			"<tt>line_family</tt> (1 or 2), <tt>line_closed</tt> (1 of a closed line) and "
+			"<tt>line_arc_length</tt> (from the line's first vertex, in the layer's units). <i>Build Curvature-Aligned Quad Mesh</i> goes on from "
 			"there. Save it as OBJ: PLY drops edges." +
 			helpChaining + helpConventions + helpReference,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::MeshCreation,

@@ -126,8 +126,13 @@ void writeLines(
 	Allocator::AddVertices(mesh, lines.vertices.cols());
 	auto id     = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_id");
 	auto family = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_family");
-	for (Index l = 0; l < lines.lines(); ++l)
+	auto closed = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_closed");
+	auto length = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_arc_length");
+	for (Index l = 0; l < lines.lines(); ++l) {
+		double walked = 0.0;
 		for (Index v = lines.offsets[l]; v < lines.offsets[l + 1]; ++v) {
+			if (v > lines.offsets[l])
+				walked += (lines.vertices.col(v) - lines.vertices.col(v - 1)).norm();
 			CVertexO& vertex = mesh.vert[v];
 			vertex.P()       = toPoint(frame.toModel(lines.vertices.col(v)));
 			vertex.N()       = toPoint(lines.normals.col(v));
@@ -135,7 +140,10 @@ void writeLines(
 			vertex.C()       = familyColor(lines.family[l]);
 			id[v]            = Scalarm(l);
 			family[v]        = Scalarm(lines.family[l]);
+			closed[v]        = Scalarm(lines.closed[l]);
+			length[v]        = Scalarm(walked * frame.diagonal);
 		}
+	}
 	writeEdges(mesh, lines.offsets, lines.closed);
 	Allocator::GetPerMeshAttribute<int>(mesh, sourceAttribute)() = sourceLayer;
 	vcg::tri::UpdateBounding<CMeshO>::Box(mesh);

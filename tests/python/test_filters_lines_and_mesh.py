@@ -171,6 +171,35 @@ def test_line_layer_attributes(traced):
     assert len(np.unique(mesh.vertex_color_matrix(), axis=0)) == 2
 
 
+def test_lines_carry_their_arc_length_and_whether_they_close(traced):
+    meshes, report = traced
+    mesh = meshes.current_mesh()
+    line, closed = attribute(meshes, "line_id"), attribute(meshes, "line_closed")
+    length, positions = attribute(meshes, "line_arc_length"), mesh.vertex_matrix()
+    firsts = np.unique(line, return_index=True)[1]
+    assert set(np.unique(closed)) <= {0.0, 1.0} and closed[firsts].sum() == report["closed_lines"]
+    assert np.all(length[firsts] == 0.0)
+    valence = np.bincount(mesh.edge_matrix().ravel(), minlength=len(line))
+    for number in np.unique(line):
+        own = line == number
+        assert len(set(closed[own])) == 1 and np.sum(valence[own] == 1) == (0 if closed[own][0] else 2)
+        steps = np.linalg.norm(np.diff(positions[own], axis=0), axis=1)
+        np.testing.assert_allclose(np.diff(length[own]), steps, atol=1e-6)
+
+
+def test_lines_survive_an_obj_file(traced, tmp_path):
+    meshes, report = traced
+    file = str(tmp_path / "lines.obj")
+    meshes.save_current_mesh(file)
+    again = pymeshlab.MeshSet()
+    again.load_new_mesh(file)
+    mesh = again.current_mesh()
+    assert (mesh.vertex_number(), mesh.edge_number()) == (report["vertices"], report["edges"])
+    np.testing.assert_allclose(mesh.vertex_matrix(), meshes.current_mesh().vertex_matrix(), atol=1e-5)
+    ends = [np.sort(m.edge_matrix(), axis=1) for m in (mesh, meshes.current_mesh())]
+    assert {tuple(edge) for edge in ends[0]} == {tuple(edge) for edge in ends[1]}
+
+
 def test_tracing_leaves_the_cloud_untouched(torus):
     meshes = layer_of(torus)
     before = snapshot(meshes)

@@ -1,0 +1,54 @@
+# The Python examples of the README and the user guide run as they stand, one page after another.
+# SPDX-License-Identifier: GPL-3.0-or-later
+import re
+
+import pymeshlab
+import pytest
+
+from helpers import CHECKOUT
+
+# The files the examples name, and the sample clouds that stand in for them.
+SAMPLES = {"scan.ply": "torus_1600_noise1.ply", "part.ply": "cube_600.ply"}
+PAGES = ["README.md", "docs/guide.md"]
+
+
+def examples(page):
+    return re.findall(r"^```python\n(.*?)^```", (CHECKOUT / page).read_text(), re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_examples_run_one_after_another(page, tmp_path, monkeypatch):
+    pytest.importorskip("pymeshlab_curvature_lines", reason="tests a plugin file, not the package")
+    monkeypatch.chdir(tmp_path)
+    for name, sample in SAMPLES.items():
+        (tmp_path / name).write_bytes((CHECKOUT / "sample_data" / sample).read_bytes())
+    found = examples(page)
+    assert found
+    names = {}
+    for number, source in enumerate(found, start=1):
+        exec(compile(source, f"{page}, example {number}", "exec"), names)
+    made = {file.name for file in tmp_path.iterdir()} - SAMPLES.keys()
+    assert made and all((tmp_path / name).stat().st_size > 0 for name in made)
+
+
+def test_the_guide_names_every_filter():
+    import pymeshlab_curvature_lines as package
+
+    guide = (CHECKOUT / "docs/guide.md").read_text()
+    for name in package.filters():
+        assert name in guide, name
+        assert name in pymeshlab.filter_list()
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/guide.md", "docs/gallery.md", "docs/contributing.md"])
+def test_links_lead_somewhere(page):
+    file = CHECKOUT / page
+    for target in re.findall(r"\]\(([^)#]+)\)", file.read_text()):
+        if "://" not in target:
+            assert (file.parent / target).exists(), target
+
+
+def test_the_map_for_contributors_names_every_stage():
+    page = (CHECKOUT / "docs/contributing.md").read_text()
+    for header in (CHECKOUT / "filter_curvature_lines/core").glob("*.h"):
+        assert f"`{header.stem}`" in page, header.stem

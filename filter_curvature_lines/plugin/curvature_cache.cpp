@@ -88,14 +88,15 @@ CurvatureEstimate::CurvatureEstimate(
 
 void CurvatureEstimate::adoptNormals(LayerPoints& points)
 {
+	Eigen::Matrix3Xd corrected = points.normals;
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = prepared.representative[i]; r >= 0)
-			points.normals.col(i) = onSideOf(field.correctedNormals.col(r), points.normals.col(i))
-										.cast<Scalarm>()
-										.cast<double>();
+			corrected.col(i) = forVertex(field.correctedNormals.col(r), points, prepared, i)
+								   .cast<Scalarm>()
+								   .cast<double>();
+	points.normals = corrected;
 	for (Index r = 0; r < field.size(); ++r)
-		prepared.cloud.normals.col(r) =
-			onSideOf(points.normals.col(prepared.source[r]).normalized(), field.correctedNormals.col(r));
+		prepared.cloud.normals.col(r) = points.normals.col(prepared.source[r]).normalized();
 	makeTangent(prepared.cloud.normals, field);
 }
 

@@ -40,6 +40,13 @@ Eigen::Vector3d unitNormal(const LayerPoints& points, Index i)
 												 : Eigen::Vector3d::UnitZ();
 }
 
+// From the vertex its prepared point was taken from.
+bool facesAway(const LayerPoints& points, const PreparedCloud& prepared, Index i)
+{
+	const Index source = prepared.source[prepared.representative[i]];
+	return source != i && points.normals.col(i).dot(points.normals.col(source)) < 0.0;
+}
+
 // A right-handed tangent pair at n, as near to d as possible.
 void tangentPair(
 	const Eigen::Vector3d& d, const Eigen::Vector3d& n, Eigen::Vector3d& d1, Eigen::Vector3d& d2)
@@ -137,10 +144,8 @@ VertexCurvatures perVertex(
 		}
 		else {
 			// A duplicate seen from the other side: its curvatures change sign and so trade places.
-			// (A point's own normal may be wrong; its neighbours' tell the side.)
-			const Index           source   = prepared.source[r];
-			const bool            flipped  = source != i && normal.dot(unitNormal(points, source)) < 0.0;
-			const Eigen::Vector3d surface  = onSideOf(prepared.cloud.normals.col(r), normal);
+			const bool            flipped  = facesAway(points, prepared, i);
+			const Eigen::Vector3d surface  = forVertex(prepared.cloud.normals.col(r), points, prepared, i);
 			const bool            accurate = normal.dot(surface) > agreementCosine;
 			tangentPair(
 				flipped ? field.d2.col(r) : field.d1.col(r), accurate ? normal : surface, d1, d2);
@@ -223,9 +228,10 @@ void writeColorRamp(
 		layer.cm, estimates[last / 10], estimates[last - last / 10]);
 }
 
-Eigen::Vector3d onSideOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& present)
+Eigen::Vector3d forVertex(
+	const Eigen::Vector3d& normal, const LayerPoints& points, const PreparedCloud& prepared, Index vertex)
 {
-	return normal.dot(present) < 0.0 ? Eigen::Vector3d(-normal) : normal;
+	return facesAway(points, prepared, vertex) ? Eigen::Vector3d(-normal) : normal;
 }
 
 void writePositions(
@@ -251,7 +257,7 @@ void writeNormals(
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = prepared.representative[i]; r >= 0)
 			layer.cm.vert[points.vertex[i]].N() =
-				toPoint(onSideOf(normals.col(r), points.normals.col(i)));
+				toPoint(forVertex(normals.col(r), points, prepared, i));
 }
 
 bool carriesCurvature(

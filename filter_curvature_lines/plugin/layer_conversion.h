@@ -59,9 +59,11 @@ void writeAttribute(
 	const std::string&     name,
 	const Eigen::VectorXd& values);
 
-// A new normal for a vertex, on the side of its present one: of two sheets in the same place, each
-// keeps its own side.
-Eigen::Vector3d onSideOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& present);
+// The normal of a vertex's prepared point, as one for the vertex: of two sheets in the same place, each keeps
+// its own side. A vertex's own normal may be wrong, so it does not tell the side of a point that is its own.
+// `points` have the normals the cloud was prepared from.
+Eigen::Vector3d forVertex(
+	const Eigen::Vector3d& normal, const LayerPoints& points, const PreparedCloud& prepared, Index vertex);
 
 // Coordinates or normals of the prepared points go to all their vertices; the others stay.
 void writePositions(

@@ -164,6 +164,17 @@ def test_corrected_normals_are_better_and_directions_tangent_to_them(noisy_torus
     assert np.max(np.abs(np.einsum("ij,ij->i", d2, normals))) < 1e-9
 
 
+def test_corrected_normals_point_outward_where_the_given_ones_do_not(noisy_torus):
+    random = np.random.default_rng(3)
+    wrong = random.random(len(noisy_torus["positions"])) < 0.15
+    normals = noisy_torus["input_normals"].copy()
+    normals[wrong] = random.normal(size=(wrong.sum(), 3))
+    meshes = layer(noisy_torus["positions"], normals)
+    meshes.apply_filter(CURVATURE, correct_normals=True)
+    cosines = np.einsum("ij,ij->i", meshes.current_mesh().vertex_normal_matrix(), noisy_torus["normals"])
+    assert cosines.min() > 0.0
+
+
 def test_the_adaptive_estimate_does_not_depend_on_the_normals_beyond_their_side(noisy_torus):
     plain, corrected = layer_of(noisy_torus), layer_of(noisy_torus)
     plain.apply_filter(CURVATURE)

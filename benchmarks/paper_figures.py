@@ -17,7 +17,7 @@ import measures
 from measures import analytic_surfaces
 from peers.estimate import Estimate
 from peers.jets import jets
-from peers.jets import version as cgal_version
+from peers.programs import cgal_version
 
 MODES: dict[str, dict] = {
     "as published": {"scale_mode": "Paper"},

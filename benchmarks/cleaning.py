@@ -8,8 +8,6 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -32,6 +30,7 @@ from cleaning_clouds import (
     with_clean_mesh,
 )
 from comparison import Case, Column, Figures, Method, Outcome, Target, number, one, verdict
+from experiments import Settings
 from fresh_process import cost_of
 from peers.cgal_cleaning import bilateral_smoothing, jet_smoothing, removed_outliers
 from peers.cleaned import Moved, Selection
@@ -45,17 +44,6 @@ TIMED_RUNS = 3
 LARGE_SCAN = "dragon_vrip.ply"
 
 Result = Selection | Moved
-
-
-@dataclass(frozen=True)
-class Settings:
-    quick: bool = False
-    peers: bool = True
-    data: Path | None = None
-
-    @property
-    def seeds(self) -> range:
-        return range(1, 2 if self.quick else 6)
 
 
 def our_selection(cloud: Cloud) -> Selection:

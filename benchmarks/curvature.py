@@ -7,7 +7,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
@@ -37,15 +36,8 @@ Truth = dict[str, np.ndarray]
 
 
 @dataclass(frozen=True)
-class Settings:
-    quick: bool = False
-    peers: bool = True
-    data: Path | None = None
+class Settings(experiments.Settings):
     parameters: dict[str, str] = field(default_factory=dict)  # of our filter, beyond its defaults
-
-    @property
-    def seeds(self) -> range:
-        return range(1, 2 if self.quick else 6)
 
 
 @dataclass(frozen=True)

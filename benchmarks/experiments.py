@@ -4,12 +4,25 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import measures
 
 Experiments = dict[str, tuple[str, Callable[[Any], str]]]  # name: title of the section, and what writes it
+
+
+@dataclass(frozen=True)
+class Settings:
+    quick: bool = False
+    peers: bool = True
+    data: Path | None = None
+    seed_count: int = 5
+
+    @property
+    def seeds(self) -> range:
+        return range(1, 1 + (1 if self.quick else self.seed_count))
 
 
 def parser_of(experiments: Experiments, description: str | None, data: str) -> argparse.ArgumentParser:

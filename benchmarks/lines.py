@@ -10,7 +10,6 @@ import time
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 import experiments
 import measures
 from comparison import Target, number, verdict
+from experiments import Settings
 from measures import analytic_surfaces
 from mesh_figures import PolygonMesh, distances, topology_is_right
 
@@ -30,17 +30,6 @@ TARGET_VERTICES = 1600
 UMBILIC = 0.1  # of the largest |k1 - k2|: where the true directions mean something
 TORUS_AREA = 1.6 * np.pi**2
 STRAY = 2.0  # point spacings from the nearest point: a line has left the cloud
-
-
-@dataclass(frozen=True)
-class Settings:
-    quick: bool = False
-    data: Path | None = None
-    seed_count: int = 5
-
-    @property
-    def seeds(self) -> range:
-        return range(1, 1 + (1 if self.quick else self.seed_count))
 
 
 @dataclass(frozen=True)
@@ -369,7 +358,7 @@ def main() -> None:
     parser = experiments.parser_of(EXPERIMENTS, __doc__, f"where {COW} is")
     parser.add_argument("--seeds", type=int, default=5, metavar="N", help="seeds 1 to N of every cloud (default: 5)")
     given = experiments.parse(parser, EXPERIMENTS)
-    settings = Settings(given.quick, given.data, max(1, given.seeds))
+    settings = Settings(given.quick, False, given.data, max(1, given.seeds))
     introduction = (
         f"Seeds 1 to {settings.seeds[-1]}; must and aim are judged by the **worst seed**. Normals are planes fitted to "
         f"{PLANE_FIT_NEIGHBORS} neighbours, their side the true one; noise is a fraction of the diagonal.\n"

@@ -19,6 +19,7 @@ import comparison
 import experiments
 import measures
 from comparison import Case, Column, Figures, Method, Target, one
+from experiments import Settings
 from fresh_process import cost_of
 from measures import analytic_surfaces
 from mesh_figures import PolygonMesh, common_figures, edge_distances, mean_angle, rim_distance
@@ -28,18 +29,6 @@ PIPELINE = "generate_surface_reconstruction_curvature_aligned"
 PLANE_FIT_NEIGHBORS = 16
 TARGET_VERTICES = 1600  # of 20 000 points and more
 TIMED_RUNS = 2
-
-
-@dataclass(frozen=True)
-class Settings:
-    quick: bool = False
-    peers: bool = True
-    data: Path | None = None
-    seed_count: int = 5
-
-    @property
-    def seeds(self) -> range:
-        return range(1, 1 + (1 if self.quick else self.seed_count))
 
 
 @dataclass(frozen=True)

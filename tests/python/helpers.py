@@ -102,7 +102,7 @@ def snapshot(meshes):
         ]
         state += [
             _optional(mesh.vertex_custom_scalar_attribute_array, name)
-            for name in [*ATTRIBUTES, "line_id", "line_family"]
+            for name in [*ATTRIBUTES, "line_id", "line_family", "line_closed", "line_arc_length"]
         ]
     return state
 

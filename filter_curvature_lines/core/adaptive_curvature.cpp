@@ -1,4 +1,4 @@
-// Gate normals, selection of scales, estimates at anchors and their interpolation at the points.
+// Selection of scales, estimates at anchors and their interpolation at the points.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "adaptive_curvature.h"
 
@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "gate_normals.h"
 #include "quantile.h"
 #include "shuffled_order.h"
 
@@ -17,36 +18,9 @@ namespace {
 constexpr const char* progressLabel = "Estimating curvature";
 
 constexpr Index  minPoints     = 8;
-constexpr Index  gateNeighbors = 60;
-constexpr double minAgreement  = 0.25;
 constexpr double blendRadius   = 0.5;  // of the height radius
 constexpr double sameFace        = 0.8; // dot product of normals
 constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
-
-// Normals that tell the side of the surface and no more: the mean of the given ones around, of those that
-// agree with the point's own, unless nearly all oppose it.
-Eigen::Matrix3Xd gateNormals(
-	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
-{
-	Eigen::Matrix3Xd gate(3, cloud.size());
-	parallelFor(cloud.size(), progress, [&](Index k) {
-		const Index              i    = search.spatialOrder()[k];
-		const std::vector<Index> near = search.nearest(cloud.positions.col(i), gateNeighbors);
-		const Eigen::Vector3d    own  = cloud.normals.col(i);
-		Eigen::Vector3d          same = Eigen::Vector3d::Zero(), all = Eigen::Vector3d::Zero();
-		std::size_t              agree = 0;
-		for (const Index j : near) {
-			all += cloud.normals.col(j);
-			if (own.dot(cloud.normals.col(j)) > 0.5) { // random normals hardly agree so far
-				same += cloud.normals.col(j);
-				++agree;
-			}
-		}
-		const Eigen::Vector3d sum = agree < minAgreement * near.size() ? all : same;
-		gate.col(i)               = sum.norm() > 1e-9 ? Eigen::Vector3d(sum.normalized()) : own;
-	});
-	return gate;
-}
 
 PointCloud reordered(const PointCloud& cloud, const Eigen::Matrix3Xd& gate, const std::vector<Index>& order)
 {

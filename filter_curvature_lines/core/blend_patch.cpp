@@ -177,11 +177,6 @@ double purityOf(const SurfacePatch& patch, double noise, double rate)
 
 } // namespace
 
-double supportRadius(const BlendInput& input, const BlendOptions& options, Index i)
-{
-	return options.radius * input.spacing[i];
-}
-
 // Guides of the other supports have left the noise behind.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
@@ -213,7 +208,7 @@ BlendPatch patchAt(
 {
 	BlendPatch    patch;
 	Scratch&      scratch = Scratch::ofThisThread();
-	const double  radius  = supportRadius(input, options, i);
+	const double  radius  = options.radius[i];
 	const double  reach   = ballRadius(input, options, radius, i);
 	SurfacePatch& surface = patch.surface;
 	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);

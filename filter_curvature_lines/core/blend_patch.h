@@ -13,7 +13,7 @@ namespace curvature_lines {
 struct BlendInput {
 	SpatialOrder        order;
 	PointCloud          cloud;
-	std::vector<double> spacing; // per point, smooth: the unit of radii
+	std::vector<double> spacing; // per point, smooth: side of the square that holds one point, a length
 	std::vector<double> noise;   // per point: standard deviation of the positions, a length
 };
 
@@ -30,7 +30,7 @@ struct BlendOptions {
 		Bent,  // arc lengths along the guide instead of their projection: reaches further round a bend
 	};
 	Support support    = Support::Free;
-	double  radius     = 5.0; // in local spacings
+	std::vector<double> radius; // per point, of a patch there, smooth: a length
 	double  gateWidth  = 0.7; // Gated: deviation from the linear normal that quarters a weight
 	double  purity     = 0.0; // how fast a patch loses weight as its residuals exceed the noise
 	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: no limit
@@ -71,8 +71,7 @@ double gateWeight(double e2);
 // Normals that oppose each other further are of another sheet (cosine).
 constexpr double minOpposing = -0.2;
 
-// Of the patch at a point, and of the ball that holds all points the patch may see.
-double supportRadius(const BlendInput& input, const BlendOptions& options, Index i);
+// Of the ball that holds all points a patch at a point may see.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i);
 
 } // namespace curvature_lines

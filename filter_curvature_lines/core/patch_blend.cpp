@@ -19,7 +19,7 @@ using Support = BlendOptions::Support;
 
 constexpr double acrossEdge        = 0.1; // gate: a normal that deviates by 1.5 widths
 constexpr double maxAcrossLeverage = 0.2; // of a patch that tells where the edge is
-constexpr double radiusRatio       = 1.25; // of overlapping patches: the spacing is smooth
+constexpr double radiusRatio       = 1.25; // of overlapping patches: radii are smooth
 constexpr double minLeverage       = 1e-12;
 constexpr double minRemaining      = 0.02; // of a residual, by a point's own influence
 
@@ -177,11 +177,19 @@ private:
 	std::vector<BlendPatch> m_patches;
 };
 
-// Wide patches need fewer centres to overlap as much.
-Index centerCount(Index n, const BlendOptions& options)
+// Wide patches need fewer centres to overlap as much: the first points of the shuffled order, as many
+// as each place takes.
+std::vector<Index> centersOf(const BlendInput& input, const BlendOptions& options)
 {
-	const double points = EIGEN_PI * options.radius * options.radius; // of a patch
-	return std::max<Index>(1, static_cast<Index>(n * std::min(1.0, options.overlap / points)));
+	std::vector<Index> centers;
+	const double       n = double(input.cloud.size());
+	for (Index i = 0; i < input.cloud.size(); ++i) {
+		const double ratio  = options.radius[i] / input.spacing[i];
+		const double points = EIGEN_PI * ratio * ratio; // of a patch
+		if (input.order.rank[i] < std::max(1.0, n * std::min(1.0, options.overlap / points)))
+			centers.push_back(i);
+	}
+	return centers;
 }
 
 CoveringPatches::CoveringPatches(
@@ -193,7 +201,7 @@ CoveringPatches::CoveringPatches(
 		m_input(input),
 		m_guide(guide),
 		m_options(options),
-		m_points(input.order.sample(centerCount(input.cloud.size(), options))),
+		m_points(centersOf(input, options)),
 		m_centers(columnsOf(guide.positions, m_points)),
 		m_search(m_centers),
 		m_patches(m_centers.cols())
@@ -217,17 +225,20 @@ CoveringPatches::CoveringPatches(
 
 void CoveringPatches::findCovering(Index i, std::vector<Index>& found) const
 {
-	const double radius = radiusRatio * supportRadius(m_input, m_options, i);
+	const double radius = radiusRatio * m_options.radius[i];
 	m_search.within(m_guide.positions.col(i), ballRadius(m_input, m_options, radius, i), found);
 }
 
 void CoveringPatches::describeResiduals(PatchBlend& blend) const
 {
-	for (const BlendPatch& patch : m_patches)
+	for (std::size_t c = 0; c < m_patches.size(); ++c) {
+		const BlendPatch& patch = m_patches[c];
 		if (patch.surface.valid) {
+			blend.center.push_back(m_points[c]);
 			blend.variance.push_back(patch.surface.scale * patch.surface.scale);
 			blend.effectiveCount.push_back(patch.surface.effectiveCount);
 		}
+	}
 }
 
 void CoveringPatches::blendAt(Index i, PatchBlend& blend) const

@@ -12,7 +12,8 @@ struct PatchBlend {
 	Eigen::Matrix3Xd    positions, normals; // 3 x N
 	std::vector<double> residual; // leave-one-out, a length; infinite where no patch reaches
 	std::vector<double> purity;   // 0..1: share of the patches' weight that their residuals leave
-	// Per valid patch, of its residuals; see SurfacePatch.
+	// Per valid patch: the point at its centre; of its residuals, see SurfacePatch.
+	std::vector<Index>  center;
 	std::vector<double> variance, effectiveCount;
 };
 

@@ -15,6 +15,11 @@ inline double quantileInPlace(std::vector<double>& values, double share)
 	return values[at];
 }
 
+inline double quantile(std::vector<double> values, double share)
+{
+	return quantileInPlace(values, share);
+}
+
 inline double medianInPlace(std::vector<double>& values)
 {
 	return quantileInPlace(values, 0.5);

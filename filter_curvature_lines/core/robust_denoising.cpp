@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "gate_normals.h"
+#include "local_noise.h"
 #include "patch_blend.h"
 #include "quantile.h"
 
@@ -18,9 +20,10 @@ using Support = BlendOptions::Support;
 
 constexpr const char* stage = "Denoising";
 
-// Radii in local spacings.
+// Radii in local spacings, or in units of which the cloud has as many in the middle.
 constexpr double smallestRadius  = 2.5; // 20 points: a quadric with some to spare
 constexpr double noiseStep       = 1.26;
+constexpr double noiseSettled    = 1.02; // growth of a smallest radius that is not worth a step
 constexpr double minRadiusNoise  = 5.0; // a patch narrower than this many noise units is all noise
 constexpr double freeStep        = 1.4;
 constexpr double maxFreeRadius   = 15.0;
@@ -37,8 +40,10 @@ constexpr double gatedTolerance  = 1.015;
 constexpr double minPilotRadius  = 3.2;
 constexpr double pilotNoise      = 8.0; // noise units across which an edge is told from noise
 constexpr double maxFlagRadius   = 6.3;
-constexpr double minNoise        = 1e-10; // a length: of exact samples
 constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
+constexpr double fewPoints       = 0.1; // share of the points that a ladder does not wait for
+// Bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2.
+constexpr double unitExponent    = 0.2; // of noise times spacing
 
 constexpr Index  fewestPoints    = 8; // a quadric and a residual
 constexpr Index  testPoints      = 5000;
@@ -58,50 +63,6 @@ constexpr Index  gainNeighbors   = 24;
 constexpr double smoothGain      = 0.1; // of a squared residual by gates: below it the gate only costs
 constexpr double sharpGain       = 0.3; // above it, it is an edge
 
-double quantile(std::vector<double> values, double share)
-{
-	return quantileInPlace(values, share);
-}
-
-// Side of the square that holds one point, averaged over some hundred neighbours: radii of patches
-// that overlap have to be alike.
-std::vector<double>
-localSpacing(const PointCloud& cloud, const SpatialOrder& order, const Progress& progress)
-{
-	constexpr Index      k = 16, averaged = 32, thinning = 8;
-	const Index          n = cloud.size();
-	const NeighborSearch search(cloud.positions);
-	std::vector<double>  raw(n), smooth(n);
-	parallelFor(n, progress.sub(0.0, 0.5, stage), [&](Index i) {
-		const std::vector<Index> near = search.nearest(cloud.positions.col(i), k + 1);
-		const double distance = (cloud.positions.col(near.back()) - cloud.positions.col(i)).norm();
-		raw[i]                = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
-	});
-	const std::vector<Index> sample =
-		order.sample(std::max(std::min(n, averaged), n / thinning));
-	const Eigen::Matrix3Xd places = columnsOf(cloud.positions, sample);
-	const NeighborSearch   sampleSearch(places);
-	parallelFor(n, progress.sub(0.5, 1.0, stage), [&](Index i) {
-		const std::vector<Index> near = sampleSearch.nearest(cloud.positions.col(i), averaged);
-		double                   sum  = 0.0;
-		for (const Index j : near)
-			sum += std::log(raw[sample[j]]);
-		smooth[i] = std::exp(sum / double(near.size()));
-	});
-	return smooth;
-}
-
-// The lower quartile belongs to patches off the edges; chi-squared quantile by Wilson and Hilferty.
-double noiseOf(const PatchBlend& blend)
-{
-	if (blend.variance.empty())
-		return 0.0;
-	const double degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
-	const double spread   = 2.0 / (9.0 * degrees);
-	const double expected = std::pow(1.0 - spread - 0.6744898 * std::sqrt(spread), 3);
-	return std::sqrt(quantile(blend.variance, 0.25) / expected);
-}
-
 // Ladders end where the data say: every rung takes a share of what is left of their time.
 Progress rung(const Progress& progress, int k)
 {
@@ -110,7 +71,7 @@ Progress rung(const Progress& progress, int k)
 }
 
 struct Candidate {
-	double              radius = 0.0;
+	std::vector<double> radius; // per point, of its patches: a length
 	PatchBlend          blend;
 	std::vector<double> loss; // per point: squared leave-one-out residual in noise units, limited
 };
@@ -122,6 +83,7 @@ public:
 
 private:
 	Index      size() const { return m_input.cloud.size(); }
+	void       prepare(const Progress& progress);
 	void       findNoise(const Progress& progress);
 	void       findPlainPoints(const Progress& progress);
 	double     freeRadius(const Progress& progress) const;
@@ -129,14 +91,17 @@ private:
 	Candidate  smoothCandidate(const Progress& progress) const;
 	BlendGuide edgePilot(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
-	BlendOptions gatedOptions(double radius) const;
+	BlendOptions gatedOptions(std::vector<double> radius) const;
 	Candidate  sharpCandidate(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
-	double     pilotRadius(double widest) const;
+	std::vector<double> pilotRadii(const Candidate& smooth) const;
 	std::vector<double> sharpShare(
 		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
 	void       sharpen(Candidate& smooth, const Progress& progress) const;
-	bool       fits(double radius) const { return radius * radius * fewestPatches <= size(); }
+	bool       fits(const std::vector<double>& radii) const;
+	void       findUnits();
+	std::vector<double> radii(double factor) const; // of units
+	std::vector<double> inSpacings(const std::vector<double>& lengths) const;
 	Candidate  candidate(
 		const BlendGuide&         guide,
 		const BlendOptions&       options,
@@ -150,9 +115,8 @@ private:
 	std::vector<Index>     m_everywhere;       // all points
 	std::vector<Index>     m_test;             // points that scores are taken from
 	std::vector<Index>     m_plain;            // of m_test, off the edges
-	double                 m_spacing     = 0.0; // median
-	double                 m_noise       = 0.0;
-	double                 m_firstRadius = smallestRadius; // where patches are wider than the noise
+	std::vector<double>    m_least;            // radius per point, a length: wider than the noise
+	std::vector<double>    m_unit;             // of radii per point, a length
 };
 
 RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
@@ -164,8 +128,40 @@ RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOpt
 {
 	m_input.cloud = {
 		m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
-	m_start = {m_input.cloud.positions, m_input.cloud.normals};
 	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
+}
+
+void RobustDenoiser::prepare(const Progress& progress)
+{
+	const PointCloud&    cloud = m_input.cloud;
+	const NeighborSearch search(cloud.positions);
+	m_input.spacing = localSpacing(cloud, search, m_input.order, progress.sub(0.0, 0.5, stage));
+	m_start = {cloud.positions, gateNormals(cloud, search, progress.sub(0.5, 1.0, stage))};
+}
+
+std::vector<double> RobustDenoiser::inSpacings(const std::vector<double>& lengths) const
+{
+	std::vector<double> ratios(lengths.size());
+	for (Index i = 0; i < size(); ++i)
+		ratios[i] = lengths[i] / m_input.spacing[i];
+	return ratios;
+}
+
+bool RobustDenoiser::fits(const std::vector<double>& radii) const
+{
+	double points = 0.0;
+	for (const double ratio : inSpacings(radii))
+		points += ratio * ratio;
+	return points * fewestPatches <= double(size()) * double(size());
+}
+
+std::vector<double> RobustDenoiser::radii(double factor) const
+{
+	std::vector<double> result(size());
+	for (Index i = 0; i < size(); ++i)
+		result[i] = m_options.radius > 0.0 ? factor * m_input.spacing[i] :
+											 std::max(factor * m_unit[i], m_least[i]);
+	return result;
 }
 
 Candidate RobustDenoiser::candidate(
@@ -194,20 +190,40 @@ double RobustDenoiser::score(const Candidate& candidate, const std::vector<Index
 void RobustDenoiser::findNoise(const Progress& progress)
 {
 	m_input.noise.assign(size(), m_options.noise);
-	m_noise = m_options.noise;
+	m_least = m_input.spacing;
+	for (double& radius : m_least)
+		radius *= smallestRadius;
 	BlendOptions options;
 	options.overlap = testOverlap;
-	options.radius  = smallestRadius;
-	for (int k = 0;; ++k, options.radius *= noiseStep) {
-		m_firstRadius = options.radius;
+	for (int k = 0;; ++k) {
 		if (m_options.noise <= 0.0) {
-			m_noise = std::max(
-				minNoise, noiseOf(blendPatches(m_input, m_start, options, m_test, rung(progress, k))));
-			m_input.noise.assign(size(), m_noise);
+			options.radius = m_least;
+			m_input.noise  = localNoise(
+				blendPatches(m_input, m_start, options, m_test, rung(progress, k)),
+				m_input.cloud,
+				m_input.order);
 		}
-		if (m_noise * minRadiusNoise < options.radius * m_spacing || !fits(options.radius * noiseStep))
+		std::vector<double> wider(size());
+		Index               grown = 0;
+		for (Index i = 0; i < size(); ++i) {
+			wider[i] = std::clamp(minRadiusNoise * m_input.noise[i], m_least[i], noiseStep * m_least[i]);
+			grown += wider[i] > noiseSettled * m_least[i];
+		}
+		if (double(grown) <= fewPoints * double(size()) || !fits(wider))
 			return;
+		m_least = std::move(wider);
 	}
+}
+
+// Where points are dense or noisy patches of the same size in spacings are not equally good.
+void RobustDenoiser::findUnits()
+{
+	m_unit.resize(size());
+	for (Index i = 0; i < size(); ++i)
+		m_unit[i] = std::pow(m_input.noise[i] * m_input.spacing[i], unitExponent);
+	const double middle = quantile(inSpacings(m_unit), 0.5);
+	for (double& unit : m_unit)
+		unit /= middle;
 }
 
 // Edges would make any wide patch look wrong, and the whole cloud would be smoothed too little.
@@ -215,9 +231,14 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 {
 	BlendOptions options;
 	options.purity = strictPurity;
-	options.radius = std::clamp(
-		pilotNoise * m_noise / m_spacing, minPilotRadius, std::max(minPilotRadius, maxFlagRadius));
-	options.radius         = std::max(options.radius, m_firstRadius);
+	options.radius = m_least;
+	for (Index i = 0; i < size(); ++i)
+		options.radius[i] = std::max(
+			m_least[i],
+			std::clamp(
+				pilotNoise * m_input.noise[i],
+				minPilotRadius * m_input.spacing[i],
+				maxFlagRadius * m_input.spacing[i]));
 	const PatchBlend blend = blendPatches(m_input, m_start, options, m_test, progress);
 	std::vector<Index> plain;
 	Index              clear = 0;
@@ -238,12 +259,16 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 	BlendOptions options;
 	options.purity  = strictPurity;
 	options.overlap = testOverlap;
-	double best = std::numeric_limits<double>::infinity(), radius = m_firstRadius;
-	options.radius = m_firstRadius;
-	for (int k = 0; options.radius < widest; ++k, options.radius *= freeStep) {
+	std::vector<double> first(size());
+	for (Index i = 0; i < size(); ++i)
+		first[i] = m_least[i] / m_unit[i];
+	double factor = quantile(first, fewPoints);
+	double best = std::numeric_limits<double>::infinity(), radius = factor;
+	for (int k = 0; factor < widest; ++k, factor *= freeStep) {
+		options.radius = radii(factor);
 		const double s = score(candidate(m_start, options, m_test, rung(progress, k)), m_plain);
 		if (s < best)
-			radius = options.radius;
+			radius = factor;
 		best = std::min(best, s);
 		if (s > freeTolerance * best || !fits(options.radius))
 			break;
@@ -261,12 +286,12 @@ double RobustDenoiser::bentRadius(
 	options.purity  = mildPurity;
 	options.overlap = testOverlap;
 	double best = std::numeric_limits<double>::infinity(), radius = start;
-	options.radius = start;
-	for (int k = 0; options.radius < maxBentRadius; ++k, options.radius *= bentStep) {
+	for (int k = 0; start < maxBentRadius; ++k, start *= bentStep) {
+		options.radius = radii(start);
 		const double s = score(candidate(guide, options, m_test, rung(progress, k)), m_plain);
 		best = std::min(best, s);
 		if (s <= bentTie * best)
-			radius = options.radius;
+			radius = start;
 		if (s > bentTolerance * best || !fits(options.radius))
 			break;
 	}
@@ -275,27 +300,33 @@ double RobustDenoiser::bentRadius(
 
 Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 {
+	double       factor = freeRadius(progress.sub(0.0, 0.2, stage));
 	BlendOptions options;
-	options.radius = freeRadius(progress.sub(0.0, 0.2, stage));
+	options.radius = radii(factor);
 	options.purity = strictPurity;
 	Candidate c    = candidate(m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
 	options.support = Support::Bent;
 	options.purity  = mildPurity;
-	double start    = bentStart * options.radius;
+	double start    = bentStart * factor;
 	for (int pass = 0; pass < 2; ++pass) {
 		const BlendGuide guide{c.blend.positions, c.blend.normals};
 		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
-		options.radius        = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
-		c                     = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
-		start                 = options.radius / bentStep;
+		factor         = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
+		options.radius = radii(factor);
+		c              = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
+		start          = factor / bentStep;
 	}
 	return c;
 }
 
-double RobustDenoiser::pilotRadius(double widest) const
+std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
 {
-	const double radius = std::max(minPilotRadius, pilotNoise * m_noise / m_spacing);
-	return std::max(m_firstRadius, std::min(radius, widest));
+	std::vector<double> result(size());
+	for (Index i = 0; i < size(); ++i) {
+		const double wide = std::max(minPilotRadius * m_input.spacing[i], pilotNoise * m_input.noise[i]);
+		result[i]         = std::max(m_least[i], std::min(wide, smooth.radius[i]));
+	}
+	return result;
 }
 
 // A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth
@@ -304,7 +335,7 @@ BlendGuide RobustDenoiser::edgePilot(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
 	BlendOptions options;
-	options.radius     = pilotRadius(smooth.radius);
+	options.radius     = pilotRadii(smooth);
 	options.purity     = strictPurity;
 	options.acceptance = pilotAcceptance;
 	const PatchBlend free =
@@ -319,11 +350,11 @@ BlendGuide RobustDenoiser::edgePilot(
 	return {gated.positions, gated.normals};
 }
 
-BlendOptions RobustDenoiser::gatedOptions(double radius) const
+BlendOptions RobustDenoiser::gatedOptions(std::vector<double> radius) const
 {
 	BlendOptions options;
 	options.support    = Support::Gated;
-	options.radius     = radius;
+	options.radius     = std::move(radius);
 	options.gateWidth  = m_options.sharpness;
 	options.purity     = mildPurity;
 	options.acceptance = gatedAcceptance;
@@ -334,12 +365,12 @@ Candidate RobustDenoiser::sharpCandidate(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
 	BlendGuide   guide   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
-	BlendOptions options = gatedOptions(pilotRadius(smooth.radius));
+	BlendOptions options = gatedOptions(pilotRadii(smooth));
 	const Progress ladder = progress.sub(0.2, 0.9, stage);
 	const double last  = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
 	double       bestScore = std::numeric_limits<double>::infinity();
 	Candidate    best;
-	for (int k = 0;; ++k, options.radius *= gatedStep) {
+	for (int k = 0;; ++k) {
 		Candidate    c = candidate(guide, options, targets, rung(ladder, k));
 		const double s = score(c, targets);
 		guide = {c.blend.positions, c.blend.normals};
@@ -347,8 +378,10 @@ Candidate RobustDenoiser::sharpCandidate(
 			bestScore = s;
 			best      = std::move(c);
 		}
-		const double next = options.radius * gatedStep;
-		if (s > gatedTolerance * bestScore || next > last || !fits(next))
+		for (double& radius : options.radius)
+			radius *= gatedStep;
+		if (s > gatedTolerance * bestScore || quantile(inSpacings(options.radius), 0.5) > last ||
+			!fits(options.radius))
 			break;
 	}
 	options.radius = best.radius;
@@ -407,9 +440,9 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
-	m_input.spacing = localSpacing(m_input.cloud, m_input.order, progress.sub(0.0, 0.05, stage));
-	m_spacing       = quantile(m_input.spacing, 0.5);
+	prepare(progress.sub(0.0, 0.05, stage));
 	findNoise(progress.sub(0.05, 0.15, stage));
+	findUnits();
 	findPlainPoints(progress.sub(0.15, 0.2, stage));
 	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
@@ -417,8 +450,8 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	RobustDenoisingResult result;
 	result.positions = m_input.order.restore(cleaned.blend.positions);
 	result.normals   = m_input.order.restore(cleaned.blend.normals);
-	result.noise  = m_noise;
-	result.radius = cleaned.radius;
+	result.noise     = quantile(m_input.noise, 0.5);
+	result.radius    = quantile(inSpacings(cleaned.radius), 0.5);
 	return result;
 }
 

@@ -196,6 +196,47 @@ TEST(RobustDenoising, FollowsTheDensity)
 	EXPECT_LT(noisy.remaining(result.positions, sparse), 0.45);
 }
 
+// Five times the noise on one side: either side as clean as it would be alone.
+TEST(RobustDenoising, FollowsTheNoise)
+{
+	NoisyCloud      noisy("torus", 6000, 0.0), louder("torus", 6000, 0.01);
+	const NoisyCloud quiet("torus", 6000, 0.002);
+	std::vector<Index> little, much;
+	for (Index i = 0; i < noisy.cloud.size(); ++i) {
+		// The same random numbers: the clouds differ in the noise only.
+		const bool left          = noisy.cloud.positions(0, i) < 0.0;
+		noisy.cloud.positions.col(i) = (left ? quiet : louder).cloud.positions.col(i);
+		if (std::abs(noisy.cloud.positions(0, i)) > 0.05) // the step itself is nobody's scan
+			(left ? little : much).push_back(i);
+	}
+	estimateNormals(noisy.cloud);
+	const auto whole = denoiseRobustly(noisy.cloud);
+	EXPECT_LT(
+		noisy.rmsDistance(whole.positions, little),
+		1.3 * quiet.rmsDistance(denoiseRobustly(quiet.cloud).positions, little));
+	EXPECT_LT(
+		noisy.rmsDistance(whole.positions, much),
+		1.3 * louder.rmsDistance(denoiseRobustly(louder.cloud).positions, much));
+}
+
+TEST(RobustDenoising, NeedsNoMoreOfNormalsThanMostOfTheirSides)
+{
+	std::mt19937                     random(5);
+	std::normal_distribution<double> normal;
+	for (const double noise : {0.0, 0.005}) {
+		NoisyCloud noisy("torus", 1600, noise);
+		for (Index i = 0; i < noisy.cloud.size(); ++i)
+			if (random() % 100 < 15)
+				noisy.cloud.normals.col(i) =
+					Vector3d(normal(random), normal(random), normal(random)).normalized();
+		const auto result = denoiseRobustly(noisy.cloud);
+		for (Index i = 0; i < noisy.cloud.size(); ++i) {
+			const Vector3d foot = noisy.surface.project(result.positions.col(i) * noisy.surface.diagonal());
+			EXPECT_GT(result.normals.col(i).dot(noisy.surface.frame(foot).normal), 0.5);
+		}
+	}
+}
+
 TEST(RobustDenoising, HardlyMovesACleanCloud)
 {
 	for (const char* name : {"torus", "cube"}) {

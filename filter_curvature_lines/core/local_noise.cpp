@@ -1,0 +1,90 @@
+// Estimates at a sample of the points, spread over all.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "local_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quantile.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr const char* stage = "Measuring the cloud";
+
+constexpr Index  noisePlaces     = 500;
+constexpr Index  noiseNeighbors  = 8;    // places that a point takes its noise from
+constexpr Index  noisePatches    = 300;  // a place takes its noise from,
+constexpr double noiseShare      = 0.04; // or this share of all
+constexpr double minNoise        = 1e-10; // a length: of exact samples
+
+// Positive values at some points spread over all: the geometric mean of the `averaged` nearest.
+std::vector<double> spread(
+	const Eigen::Matrix3Xd&    positions,
+	const std::vector<Index>&  points,
+	const std::vector<double>& values, // one per point of `points`
+	Index                      averaged,
+	const Progress&            progress)
+{
+	const Eigen::Matrix3Xd places = columnsOf(positions, points);
+	const NeighborSearch   search(places);
+	std::vector<double>    logs, smooth(positions.cols());
+	for (const double value : values)
+		logs.push_back(std::log(value));
+	parallelFor(positions.cols(), progress, [&](Index i) {
+		double sum = 0.0;
+		const std::vector<Index> near = search.nearest(positions.col(i), averaged);
+		for (const Index k : near)
+			sum += logs[k];
+		smooth[i] = std::exp(sum / double(near.size()));
+	});
+	return smooth;
+}
+
+} // namespace
+
+std::vector<double> localSpacing(
+	const PointCloud&     cloud,
+	const NeighborSearch& search,
+	const SpatialOrder&   order,
+	const Progress&       progress)
+{
+	constexpr Index          k = 16, averaged = 32, thinning = 8;
+	const Index              n = cloud.size();
+	const std::vector<Index> sample =
+		order.sample(std::max(std::min(n, averaged), n / thinning));
+	std::vector<double> side(sample.size());
+	parallelFor(static_cast<Index>(sample.size()), progress.sub(0.0, 0.5, stage), [&](Index s) {
+		const Eigen::Vector3d    position = cloud.positions.col(sample[s]);
+		const std::vector<Index> near     = search.nearest(position, k + 1);
+		const double             distance = (cloud.positions.col(near.back()) - position).norm();
+		side[s] = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
+	});
+	return spread(cloud.positions, sample, side, averaged, progress.sub(0.5, 1.0, stage));
+}
+
+// Noise varies over a cloud. The lower quartile of many patches belongs to those off the edges; chi-squared
+// quantile by Wilson and Hilferty.
+std::vector<double> localNoise(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
+{
+	if (blend.center.empty())
+		return std::vector<double>(cloud.size(), minNoise);
+	const double degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
+	const double scatter  = 2.0 / (9.0 * degrees);
+	const double expected = std::pow(1.0 - scatter - 0.6744898 * std::sqrt(scatter), 3);
+	const Eigen::Matrix3Xd   centers = columnsOf(cloud.positions, blend.center);
+	const NeighborSearch     search(centers);
+	const std::vector<Index> places = order.sample(noisePlaces);
+	const Index count = std::max(noisePatches, static_cast<Index>(noiseShare * double(blend.center.size())));
+	std::vector<double> noise(places.size());
+	parallelFor(static_cast<Index>(places.size()), {}, [&](Index k) {
+		std::vector<double> variance;
+		for (const Index c : search.nearest(cloud.positions.col(places[k]), count))
+			variance.push_back(blend.variance[c]);
+		noise[k] = std::max(minNoise, std::sqrt(quantileInPlace(variance, 0.25) / expected));
+	});
+	return spread(cloud.positions, places, noise, noiseNeighbors, {});
+}
+
+} // namespace curvature_lines

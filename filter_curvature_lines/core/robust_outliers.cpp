@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "outlier_ballot.h"
+#include "outlier_appeal.h"
 #include "quantile.h"
 #include "spatial_order.h"
 
@@ -46,6 +46,7 @@ public:
 	void          fitVoters(const Progress& progress);
 	bool          vote(const Progress& progress); // true when something changed
 	double        noise() const;
+	void          hearGroups(const Progress& progress);
 	OutlierResult result() const;
 
 private:
@@ -316,6 +317,12 @@ bool RobustVote::vote(const Progress& progress)
 	return replaceRejected(rejected);
 }
 
+void RobustVote::hearGroups(const Progress& progress)
+{
+	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
+	restoreGroups(cloud, m_verdicts, noise(), m_sensitivity, m_rejected, progress);
+}
+
 double RobustVote::noise() const
 {
 	std::vector<double> noise;
@@ -349,10 +356,11 @@ OutlierResult rejectByRobustVotes(
 	Index       used = 0;
 	for (bool changed = true; changed && used < most; ++used) {
 		const Progress part = progress.sub(
-			0.05 + 0.95 * used / most, 0.05 + 0.95 * (used + 1) / most, "Rejecting outliers");
+			0.05 + 0.9 * used / most, 0.05 + 0.9 * (used + 1) / most, "Rejecting outliers");
 		votes.fitVoters(part.sub(0.0, 0.8, "Fitting surfaces"));
 		changed = votes.vote(part.sub(0.8, 1.0, "Voting"));
 	}
+	votes.hearGroups(progress.sub(0.95, 1.0, "Hearing groups again"));
 	OutlierResult result = votes.result();
 	result.roundsUsed    = used;
 	return result;

@@ -203,6 +203,27 @@ TEST(RobustVote, DenseClustersDoNotOutvoteTheSurface)
 	EXPECT_LE(std::count(result.outlier.begin(), result.outlier.begin() + 4000, char(1)), 12);
 }
 
+// A thorn on a sheet, four spacings wide at half its height: too narrow for voters of 150 points.
+TEST(RobustVote, NarrowTipsStay)
+{
+	const double    spacing = 0.01, width = 2.5 * spacing, height = 12.0 * spacing;
+	samples::Random random(7, 0);
+	const auto      thorn = [&](double r) { return height * std::exp(-r * r / (width * width)); };
+	Matrix3Xd       positions(3, 12000);
+	Index           tip = 0;
+	for (Index i = 0; i < positions.cols();) {
+		const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5), r = std::hypot(x, y);
+		const double slope = 2.0 * r / (width * width) * thorn(r);
+		if (random.uniform(0.0, 4.5) > std::sqrt(1.0 + slope * slope)) // even on the surface
+			continue;
+		tip += thorn(r) > 0.2 * height;
+		positions.col(i++) = Vector3d(x, y, thorn(r));
+	}
+	ASSERT_GT(tip, 60);
+	const OutlierResult result = rejectByRobustVotes(positions, 3.5, 3);
+	EXPECT_LE(std::count(result.outlier.begin(), result.outlier.end(), char(1)), 25);
+}
+
 TEST(RobustVote, MoreSensitiveFindsNoLess)
 {
 	OutlierOptions lax, strict;

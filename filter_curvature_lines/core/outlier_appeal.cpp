@@ -1,0 +1,157 @@
+// Groups of rejected points, and surfaces continued into them pass by pass.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "outlier_appeal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spatial_order.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr Index  smallVoter      = 30;  // points
+constexpr Index  fewestInGroup   = smallVoter; // smaller ones would have the majority of it
+constexpr double linkLength      = 2.0; // spacings
+constexpr double spacingOfCrowd  = 0.72; // over the distance to the 6th neighbour, of even points
+constexpr double oneSurface      = 1.5; // noise units of deviation
+constexpr double acceptedShare   = 0.25; // of the points of a voter, of those that join the group to the rest
+constexpr int    mostPasses      = 30;
+
+class Appeal {
+public:
+	Appeal(
+		const VoterCloud&           cloud,
+		const std::vector<Verdict>& verdicts,
+		double                      noise,
+		double                      sensitivity,
+		std::vector<char>&          rejected) :
+			m_cloud(cloud),
+			m_verdicts(verdicts),
+			m_noise(noise),
+			m_sensitivity(sensitivity),
+			m_rejected(rejected)
+	{
+	}
+
+	bool run(const Progress& progress);
+
+private:
+	void findGroups();
+	bool belongs(const VoterCloud& heard, Index i) const;
+
+	const VoterCloud&           m_cloud;
+	const std::vector<Verdict>& m_verdicts;
+	double                      m_noise, m_sensitivity;
+	std::vector<char>&          m_rejected;
+	std::vector<Index>          m_grouped; // rejected points of large groups
+};
+
+void Appeal::findGroups()
+{
+	const Index        n = static_cast<Index>(m_rejected.size());
+	std::vector<char>  seen(n, 0);
+	std::vector<Index> group, near;
+	for (Index first = 0; first < n; ++first) {
+		if (!m_rejected[first] || seen[first])
+			continue;
+		group.assign(1, first);
+		seen[first] = 1;
+		for (std::size_t k = 0; k < group.size(); ++k) {
+			const Index  i       = group[k];
+			const double spacing = spacingOfCrowd * m_cloud.crowding[i];
+			const double usual   = m_verdicts[i].spacing;
+			m_cloud.all.within(
+				m_cloud.positions.col(i),
+				linkLength * (usual > 0.0 ? std::min(usual, spacing) : spacing),
+				near);
+			for (const Index j : near)
+				if (m_rejected[j] && !seen[j]) {
+					seen[j] = 1;
+					group.push_back(j);
+				}
+		}
+		if (static_cast<Index>(group.size()) >= fewestInGroup)
+			m_grouped.insert(m_grouped.end(), group.begin(), group.end());
+	}
+	std::sort(m_grouped.begin(), m_grouped.end());
+}
+
+bool Appeal::belongs(const VoterCloud& heard, Index i) const
+{
+	thread_local OutlierVoter voter;
+	voter           = OutlierVoter();
+	voter.centre    = i;
+	voter.neighbors = smallVoter;
+	fitVoter(voter, heard);
+	if (!voter.surface.valid)
+		return false;
+	voter.noise = m_verdicts[i].noise > 0.0 ? m_verdicts[i].noise : m_noise;
+	if (voter.deviation() > oneSurface * voter.noise)
+		return false;
+	const double reach    = m_sensitivity * voter.heightError();
+	const auto   residual = [&](Index j) {
+        return std::abs(voter.surface.residual(voter.surface.toLocal(m_cloud.positions.col(j))));
+	};
+	if (residual(i) > reach)
+		return false;
+	Index on = 0, accepted = 0;
+	for (const Index j : voter.ball)
+		if (residual(j) <= reach) {
+			++on;
+			accepted += !m_rejected[j];
+		}
+	return accepted >= acceptedShare * on;
+}
+
+bool Appeal::run(const Progress& progress)
+{
+	findGroups();
+	bool any = false;
+	for (int pass = 0; pass < mostPasses && !m_grouped.empty(); ++pass) {
+		std::vector<char> heard(m_rejected.size());
+		for (std::size_t i = 0; i < heard.size(); ++i)
+			heard[i] = !m_rejected[i];
+		for (const Index i : m_grouped)
+			heard[i] = 1;
+		std::vector<Index> active;
+		for (std::size_t i = 0; i < heard.size(); ++i)
+			if (heard[i])
+				active.push_back(static_cast<Index>(i));
+		const Eigen::Matrix3Xd positions = columnsOf(m_cloud.positions, active);
+		const NeighborSearch   search(positions);
+		const VoterCloud       cloud{
+            m_cloud.positions, m_cloud.crowding, m_cloud.rank, m_cloud.all, active, search};
+		std::vector<char> restored(m_grouped.size(), 0);
+		parallelFor(static_cast<Index>(m_grouped.size()), progress, [&](Index k) {
+			restored[k] = belongs(cloud, m_grouped[k]);
+		});
+		std::vector<Index> left;
+		for (std::size_t k = 0; k < m_grouped.size(); ++k)
+			if (restored[k])
+				m_rejected[m_grouped[k]] = 0;
+			else
+				left.push_back(m_grouped[k]);
+		if (left.size() == m_grouped.size())
+			break;
+		m_grouped = std::move(left);
+		any       = true;
+	}
+	return any;
+}
+
+} // namespace
+
+bool restoreGroups(
+	const VoterCloud&           cloud,
+	const std::vector<Verdict>& verdicts,
+	double                      noise,
+	double                      sensitivity,
+	std::vector<char>&          rejected,
+	const Progress&             progress)
+{
+	return Appeal(cloud, verdicts, noise, sensitivity, rejected).run(progress);
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,20 @@
+// A second hearing for rejected points that hang together: tips and ridges too narrow for the voters.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "outlier_ballot.h"
+
+namespace curvature_lines {
+
+// Points of large groups are taken back where small voters see one surface run on from the accepted points
+// into the group. Neither a cluster of outliers nor a patch beside the surface is: their edge is a step.
+// `cloud.active` is not looked at; `verdicts` are of the vote that rejected. True if any was taken back.
+bool restoreGroups(
+	const VoterCloud&           cloud,
+	const std::vector<Verdict>& verdicts,
+	double                      noise, // where a verdict has none
+	double                      sensitivity,
+	std::vector<char>&          rejected,
+	const Progress&             progress = {});
+
+} // namespace curvature_lines

@@ -31,6 +31,7 @@ constexpr double linkStretch  = 1.15;
 constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
 constexpr double faceGain     = 0.9;  // and less than that of one surface,
 constexpr double clearGain    = 0.6;  // much less somewhere near
+constexpr std::size_t clearAgreement = 3; // anchors
 constexpr double faceReach    = 3.0; // radii
 constexpr Index  sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
 constexpr double leastFace    = 0.15; // weight over the largest one's: strays among the anchors have less
@@ -302,6 +303,20 @@ std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
 	return continued;
 }
 
+// An edge leaves no doubt about many balls, chance about one.
+std::vector<Index> SurfaceAnchors::agreeing(const std::vector<Index>& clear) const
+{
+	const Eigen::Matrix3Xd origins = m_origins(Eigen::all, clear);
+	const NeighborSearch   search(origins);
+	std::vector<Index>     agree, near;
+	for (const Index a : clear) {
+		search.within(m_origins.col(a), m_scale.height.radius, near);
+		if (near.size() >= clearAgreement)
+			agree.push_back(a);
+	}
+	return agree;
+}
+
 // Before misfits have a face of their own, they separate the faces: links to them do not count.
 void SurfaceAnchors::continueFaces(const PointSubsets& subsets, AnchorDetail detail)
 {
@@ -317,6 +332,8 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets, AnchorDetail det
 	for (const Index a : misfits)
 		if (clear[a].valid)
 			found.push_back(a);
+	if (detail == AnchorDetail::Full)
+		found = agreeing(found);
 	const Eigen::Matrix3Xd origins = m_origins(Eigen::all, found);
 	const NeighborSearch   foundSearch(origins);
 	for (const Index a : misfits)

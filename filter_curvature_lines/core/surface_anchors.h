@@ -156,6 +156,7 @@ private:
 	void link();
 	std::vector<SurfaceElement> continuedTo(
 		const std::vector<Index>& misfits, const PointSubsets& subsets, Index stride, double gain);
+	std::vector<Index> agreeing(const std::vector<Index>& clear) const;
 	void continueFaces(const PointSubsets& subsets, AnchorDetail detail);
 	void cutLinks();
 	double offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const;

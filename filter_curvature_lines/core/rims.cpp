@@ -22,6 +22,7 @@ constexpr double cornerCosine = 0.6; // of the turn: 53 degrees
 constexpr double windowLength = 2.5; // half the part of the rim looked at; these in vertex spacings
 constexpr double windowDepth  = 3.0;
 constexpr double mostOffset   = 1.5;
+constexpr double mostCornerOffset = 3.0;
 constexpr double sheetHeight  = 1.0;
 constexpr double sameSheet    = 0.5; // cosine of normals
 constexpr Index  fewestPoints = 4;
@@ -30,7 +31,7 @@ constexpr double secondOutermost =
 constexpr int    smoothingSteps = 8;
 constexpr double smoothing      = 0.5,
 				 unshrinking    = -0.53;    // Taubin 1995: a low-pass filter that does not shrink
-constexpr Index lineBegin = 2, lineEnd = 7; // vertices beside a corner that its sides are fitted to
+constexpr Index lineBegin = 1, lineEnd = 4; // vertices beside a corner that its sides are fitted to
 
 // Points expected beyond x when they lie `density` per length up to 0, blurred by `noise`.
 double expectedBeyond(double x, double density, double noise)
@@ -104,6 +105,48 @@ void fitLine(
 	direction.normalize();
 }
 
+// Of the vertices around a corner the one farthest from the chord across it: on a front that cuts the corner
+// the turn is about as sharp at several.
+Index outermost(const Rim& rim, Index k, const Eigen::Matrix3Xd& positions)
+{
+	const Vector3d a = positions.col(rim.at(k - chordReach));
+	const Vector3d d = (positions.col(rim.at(k + chordReach)) - a).normalized();
+	Index          best   = k;
+	double         height = 0.0;
+	for (Index m = k - chordReach + 1; m < k + chordReach; ++m) {
+		const Vector3d p = positions.col(rim.at(m)) - a;
+		const double   h = (p - p.dot(d) * d).norm();
+		if (h > height) {
+			height = h;
+			best   = m;
+		}
+	}
+	return (best % rim.size() + rim.size()) % rim.size();
+}
+
+// Half-way between the nearest points of the two sides' lines; what the sides look like beside the corner
+// depends on the void beyond it, and is not used.
+void fitCorner(const Rim& rim, Index k, double most, Eigen::Matrix3Xd& positions)
+{
+	Vector3d p, q, d, e;
+	fitLine(rim, k, -1, positions, p, d);
+	fitLine(rim, k, 1, positions, q, e);
+	const double b = d.dot(e), det = 1.0 - b * b;
+	if (!(det > 0.1))
+		return;
+	const Vector3d w = q - p;
+	const double   s = (w.dot(d) - b * w.dot(e)) / det, t = (b * w.dot(d) - w.dot(e)) / det;
+	const Vector3d meet = 0.5 * (p + s * d + q + t * e);
+	if (!((meet - positions.col(rim.at(k))).norm() < most))
+		return;
+	positions.col(rim.at(k)) = meet;
+	for (const Index side : {-1, 1}) {
+		const Vector3d end = positions.col(rim.at(k + side * lineBegin));
+		for (Index m = 1; m < lineBegin; ++m)
+			positions.col(rim.at(k + side * m)) = meet + double(m) / lineBegin * (end - meet);
+	}
+}
+
 } // namespace
 
 Vector3d Rim::tangent(Index k, const Eigen::Matrix3Xd& positions) const
@@ -138,7 +181,8 @@ std::vector<Rim> findRims(const TriangleMesh& mesh)
 					const double other = cosines[(k + m + rim.size()) % rim.size()];
 					sharpest           = m < 0 ? cosines[k] < other : cosines[k] <= other;
 				}
-				rim.corner[k] = sharpest;
+				if (sharpest)
+					rim.corner[outermost(rim, k, mesh.vertices)] = 1;
 			}
 		}
 		rims.push_back(std::move(rim));
@@ -170,6 +214,9 @@ void fitRims(
 		});
 		for (Index k = 0; k < rim.size(); ++k)
 			positions.col(rim.at(k)) = moved[k];
+		for (Index k = 0; k < rim.size(); ++k)
+			if (rim.corner[k])
+				fitCorner(rim, k, mostCornerOffset * scaffold.spacing, positions);
 		for (int step = 0; step < smoothingSteps; ++step) {
 			for (const double share : {smoothing, unshrinking}) {
 				for (Index k = 0; k < rim.size(); ++k) {
@@ -181,22 +228,6 @@ void fitRims(
 				for (Index k = 0; k < rim.size(); ++k)
 					positions.col(rim.at(k)) = moved[k];
 			}
-		}
-		for (Index k = 0; k < rim.size(); ++k) {
-			if (!rim.corner[k])
-				continue;
-			// Half-way between the nearest points of the two sides' lines.
-			Vector3d p, q, d, e;
-			fitLine(rim, k, -1, positions, p, d);
-			fitLine(rim, k, 1, positions, q, e);
-			const double b = d.dot(e), det = 1.0 - b * b;
-			if (!(det > 0.1))
-				continue;
-			const Vector3d w = q - p;
-			const double   s = (w.dot(d) - b * w.dot(e)) / det, t = (b * w.dot(d) - w.dot(e)) / det;
-			const Vector3d meet = 0.5 * (p + s * d + q + t * e);
-			if ((meet - positions.col(rim.at(k))).norm() < mostOffset * scaffold.spacing)
-				positions.col(rim.at(k)) = meet;
 		}
 	}
 }

@@ -24,6 +24,8 @@ constexpr double maxExponent    = 300.0; // reached only when `closest` is not t
 constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
 constexpr double maxNormalTurn  = 0.5;  // tangent of the turn by which curvature may correct a normal
 constexpr double flatShare      = 1e-3; // see principalDirection()
+constexpr double slopeRidge     = 0.01; // of the slopes in tensorAt(), against points on a line
+constexpr double maxBeside      = 1.0;  // kernel widths between c and the mean point that are extrapolated
 
 // The points with positive statistical weight at `closest`, and itself. Read in place: nothing is
 // copied.
@@ -177,36 +179,48 @@ Vector2d doubledAngle(const TangentFrame& frame, const Vector3d& m, const Vector
 	return {d.x() * d.x() - d.y() * d.y(), 2.0 * d.x() * d.y()};
 }
 
-// Mean of k1 e1 e1^T + k2 e2 e2^T in a tangent plane: the isotropic part, and the deviator as a
-// vector of twice the angle, of length k1 - k2.
-struct TensorMean {
-	double   weight = 0.0, mean = 0.0, magnitude = 0.0;
+// k1 e1 e1^T + k2 e2 e2^T in the tangent plane at c: the isotropic part, and the deviator as a vector of
+// twice the angle, of length k1 - k2.
+struct TensorAt {
+	double   mean = 0.0, magnitude = 0.0;
 	Vector2d deviator = Vector2d::Zero(), line = Vector2d::Zero();
 };
 
-TensorMean tensorMean(
+// A plane through the values, read at c. Their weighted mean would belong to the mean of the points, which
+// is beside c by a share of the spacing: the lines of an exact field were a quarter of a degree off.
+TensorAt tensorAt(
 	const PointCloud&     cloud,
 	const CurvatureField& field,
 	const Support&        support,
 	const Vector3d&       c,
 	const TangentFrame&   frame)
 {
-	TensorMean t;
+	using Values = Eigen::Matrix<double, 1, 6>;
+	Eigen::Matrix3d             moments = Eigen::Matrix3d::Zero();
+	Eigen::Matrix<double, 3, 6> sums    = Eigen::Matrix<double, 3, 6>::Zero();
+	const double                scale   = support.radius() > 1e-100 ? kernelRatio / support.radius() : 0.0;
 	support.forEachNear(c, kernelRatio, [&](Index j, double w, double) {
 		if (!hasCurvature(field.status[j]))
 			return;
-		const Vector2d line = doubledAngle(frame, cloud.normals.col(j), field.d1.col(j));
-		t.weight += w;
-		t.mean += w * 0.5 * (field.k1[j] + field.k2[j]);
-		t.magnitude += w * (std::abs(field.k1[j]) + std::abs(field.k2[j]));
-		t.deviator += w * (field.k1[j] - field.k2[j]) * line;
-		t.line += w * line;
+		const Vector2d line       = doubledAngle(frame, cloud.normals.col(j), field.d1.col(j));
+		const double   difference = field.k1[j] - field.k2[j];
+		const Vector2d at         = scale * frame.toPlane(cloud.positions.col(j) - c);
+		const Vector3d basis(1.0, at.x(), at.y());
+		Values         values;
+		values << 0.5 * (field.k1[j] + field.k2[j]), std::abs(field.k1[j]) + std::abs(field.k2[j]),
+			difference * line.transpose(), line.transpose();
+		moments += w * basis * basis.transpose();
+		sums += w * basis * values;
 	});
-	if (t.weight > 0.0) {
-		t.mean /= t.weight;
-		t.magnitude /= t.weight;
-		t.deviator /= t.weight;
-		t.line /= t.weight;
+	TensorAt t;
+	if (moments(0, 0) > 0.0) {
+		Values       values = sums.row(0) / moments(0, 0);
+		const double beside = moments.row(0).tail<2>().norm() / moments(0, 0);
+		if (beside < maxBeside) {
+			moments.diagonal().tail<2>().array() += slopeRidge * moments(0, 0);
+			values = (moments.inverse() * sums).row(0);
+		}
+		t = {values[0], std::max(0.0, values[1]), values.segment<2>(2).transpose(), values.tail<2>().transpose()};
 	}
 	return t;
 }
@@ -214,7 +228,7 @@ TensorMean tensorMean(
 // Where k1 - k2 vanishes (planes, umbilic regions) the tensor has no directions but the field may
 // still have: a small share of the plain mean of its lines takes over, without a jump.
 Vector3d principalDirection(
-	const TensorMean& t, const TangentFrame& frame, double radius, const Vector3d& fallback)
+	const TensorAt& t, const TangentFrame& frame, double radius, const Vector3d& fallback)
 {
 	const double   scale   = t.magnitude + (radius > 0.0 ? 1e-6 / radius : 1.0);
 	const Vector2d doubled = t.deviator + flatShare * scale * t.line;
@@ -257,7 +271,7 @@ SurfaceSample projectToSurface(
 	sample.normal   = normalAt(cloud, field, support, sample.position);
 
 	const TangentFrame frame(sample.normal);
-	const TensorMean   t          = tensorMean(cloud, field, support, sample.position, frame);
+	const TensorAt     t          = tensorAt(cloud, field, support, sample.position, frame);
 	const double       difference = t.deviator.norm();
 	sample.k1 = t.mean + 0.5 * difference;
 	sample.k2 = t.mean - 0.5 * difference;

@@ -236,6 +236,7 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 		around.reset();
 		result.cloud   = {std::move(cleaned.positions), std::move(cleaned.normals)};
 		result.rmsMove = cleaned.rmsMove;
+		result.field.height.resize(0); // of the points as they were
 		if (cleaned.noise > 0.0)
 			result.noise = cleaned.noise;
 		clock.book("denoising");

@@ -21,10 +21,14 @@ constexpr double StartStep       = 0.25;        // at least, of the local spacin
 constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
 constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of an umbilical region
 constexpr double CloudReach      = 1.5;         // local spacings from the closest point
+constexpr double VoidWidth       = 2.5;         // local spacings that gaps between points of a random cloud may have
+constexpr double VoidSlack       = 1.5;         // local spacings to the closest point beyond one
+constexpr double CreaseCosine    = 0.8;         // normals of points next to each other
 constexpr double MaxLength       = 10.0;        // diagonals
 constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
 constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in stop distances
 constexpr double ClosingSpread   = 30.0;  // the offset is spread over so many times its length
+constexpr int    RimBisections   = 5;
 constexpr Index  ReportEvery     = 1024;
 
 struct FlowPoint {
@@ -32,6 +36,7 @@ struct FlowPoint {
 	double   curvature = 0.0;             // along the line
 	Index    cell      = -1;
 	double   arc       = 0.0;
+	Vector3d inwards   = Vector3d::Zero(); // as SurfaceSample
 };
 
 // The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families apart.
@@ -77,17 +82,19 @@ private:
 	bool               isSeed(Index i) const;
 	std::vector<Index> seedsByConfidence() const;
 	void               traceThrough(Index seed, const Progress& progress);
-	bool               traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
+	LineEnd            traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
 	bool               advance(const FlowPoint& from, FlowPoint& to) const;
+	void               reachOut(const FlowPoint& from, Points& half);
 	bool     sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const;
 	Vector3d directionOf(const SurfaceSample& sample, Index cell) const;
 	Vector3d regionDirection(Index cell) const;
 	bool     leftCloud(const FlowPoint& point) const;
+	LineEnd  edgeAt(Index cell) const;
 	bool     endsAtUmbilic(const FlowPoint& from, const FlowPoint& to) const;
 	bool     occupied(const FlowPoint& point, bool approachesStart);
 	void     registerSegment(const FlowPoint& from, const FlowPoint& to);
 	void     closeUp(const FlowPoint& start, Points& half);
-	void     append(const Points& line, bool closed);
+	void     append(const Points& line, bool closed, const std::array<LineEnd, 2>& ends);
 
 	Index  currentLine() const { return static_cast<Index>(m_network.family.size()); }
 	double distance(Index cell) const { return m_spacing.distance[m_family - 1][cell]; }
@@ -190,6 +197,7 @@ bool Tracer::sampleAt(const Vector3d& position, const FlowPoint& previous, FlowP
 	// Principal directions have no sign: the line keeps its own.
 	if (result.direction.dot(previous.direction) < 0.0)
 		result.direction = -result.direction;
+	result.inwards = sample.inwards;
 	return result.direction.dot(previous.direction) > SharpTurnCosine &&
 		   result.normal.dot(previous.normal) > SharpTurnCosine;
 }
@@ -221,19 +229,31 @@ bool Tracer::advance(const FlowPoint& from, FlowPoint& to) const
 
 bool Tracer::leftCloud(const FlowPoint& point) const
 {
-	const Vector3d offset = point.position - m_cloud.positions.col(point.cell);
-	const double   local  = m_minimum.spacing[point.cell];
-	if (offset.norm() > CloudReach * local)
+	const double distance = (point.position - m_cloud.positions.col(point.cell)).norm();
+	const double local    = m_minimum.spacing[point.cell];
+	if (distance > CloudReach * local)
 		return true;
-	if (m_minimum.status[point.cell] == PointStatus::Ok)
+	const double aside = point.inwards.norm();
+	if (aside < rimOffset || point.inwards.dot(point.direction) > 0.0)
 		return false;
-	// At the rim the neighbours are all on one side; the surface ends on the other.
-	Vector3d inwards = Vector3d::Zero();
-	for (Index j : m_minimum.neighbors[point.cell])
-		inwards += (m_cloud.positions.col(j) - m_cloud.positions.col(point.cell)).normalized();
-	const Vector3d normal = m_cloud.normals.col(point.cell);
-	inwards -= inwards.dot(normal) * normal;
-	return offset.dot(inwards) < 0.0;
+	// All points lie behind. At a rim there are none beyond, either.
+	const Vector3d beyond = point.position - VoidWidth * local / aside * point.inwards;
+	const Index    next   = m_cells.locate(beyond, point.cell);
+	const double   around = VoidSlack * std::max(local, m_minimum.spacing[next]);
+	return (beyond - m_cells.site(next)).norm() > around ||
+		   m_cloud.normals.col(next).dot(point.normal) < SharpTurnCosine;
+}
+
+// What ends the surface where the points are all on one side.
+LineEnd Tracer::edgeAt(Index cell) const
+{
+	for (Index j : m_cells.neighbors(cell)) {
+		const bool near = (m_cells.site(j) - m_cells.site(cell)).norm() < VoidWidth * m_minimum.spacing[cell];
+		const double cosine = m_cloud.normals.col(j).dot(m_cloud.normals.col(cell));
+		if (near && cosine < CreaseCosine && cosine > -SharpTurnCosine) // not the other side of a sheet
+			return LineEnd::Crease;
+	}
+	return LineEnd::Rim;
 }
 
 // A09 ends lines at umbilics and, from inside a region, at its border, because directions jump there. Where
@@ -282,14 +302,43 @@ void Tracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 		 0.5 * (from.arc + to.arc)});
 }
 
-// Follows the field from `start` (not stored) until one of the stops of A09 section 5.1 and of ours. True if
+// A step that ended beyond a rim or crease, again as far as it goes this side of it.
+void Tracer::reachOut(const FlowPoint& from, Points& half)
+{
+	const double step = m_step[from.cell];
+	FlowPoint    best, tried;
+	double       reached = 0.0, beyond = 1.0;
+	for (int k = 0; k < RimBisections; ++k) {
+		const double middle = 0.5 * (reached + beyond);
+		if (sampleAt(from.position + middle * step * from.direction, from, tried) && !leftCloud(tried)) {
+			reached = middle;
+			best    = tried;
+		}
+		else {
+			beyond = middle;
+		}
+	}
+	const double moved = reached > 0.0 ? (best.position - from.position).dot(from.direction) : 0.0;
+	best.arc           = from.arc + m_side * moved;
+	if (moved <= MinStep * m_minimum.spacing[from.cell] || occupied(best, false))
+		return;
+	registerSegment(from, best);
+	half.push_back(best);
+}
+
+// Follows the field from `start` (not stored) until one of the stops of A09 section 5.1 and of ours: None if
 // the line came back to its start.
-bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
+LineEnd Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
 {
 	FlowPoint front = start, next;
-	while (std::abs(front.arc) < MaxLength * m_spacing.diagonal && advance(front, next)) {
-		if (leftCloud(next) || endsAtUmbilic(front, next))
-			break;
+	while (std::abs(front.arc) < MaxLength * m_spacing.diagonal) {
+		const bool onwards = advance(front, next);
+		if (!onwards || leftCloud(next)) {
+			reachOut(front, half);
+			return onwards ? edgeAt(next.cell) : LineEnd::Crease;
+		}
+		if (endsAtUmbilic(front, next))
+			return LineEnd::Umbilic;
 		// A line that comes back next to its start would be stopped by it. The offset is noise, and closing
 		// is better than two ends side by side. It is less than the room other lines leave.
 		const Vector3d toStart = start.position - next.position;
@@ -301,16 +350,16 @@ bool Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& pro
 								ahead < OwnArc * d && aside < OwnDistance * m_options.stopFactor * d &&
 								next.direction.dot(start.direction) > SharpTurnCosine;
 		if (occupied(next, approaches))
-			break;
+			return LineEnd::Line;
 		registerSegment(front, next);
 		half.push_back(next);
 		if (approaches && ahead < 2.0 * step)
-			return true;
+			return LineEnd::None;
 		front = next;
 		if (half.size() % ReportEvery == 0)
 			progress.report(0.0);
 	}
-	return false;
+	return LineEnd::Length;
 }
 
 // The sideways offset of a closed line's end from its start, spread over the last stretch.
@@ -352,8 +401,11 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 
 	const Index  known = m_registry.size(m_family);
 	Points       line;
-	const bool   closed = traceHalf(start, line, progress);
+	std::array<LineEnd, 2> ends;
+	ends[1]             = traceHalf(start, line, progress);
+	const bool   closed = ends[1] == LineEnd::None;
 	if (closed) {
+		ends[0] = LineEnd::None;
 		closeUp(start, line);
 		line.insert(line.begin(), start);
 	}
@@ -362,7 +414,7 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 		back.direction = -start.direction;
 		m_side         = -1.0;
 		Points second;
-		traceHalf(back, second, progress);
+		ends[0] = traceHalf(back, second, progress);
 		std::reverse(second.begin(), second.end());
 		second.push_back(start);
 		line.insert(line.begin(), second.begin(), second.end());
@@ -377,15 +429,16 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 		end.arc       = line.back().arc + (start.position - line.back().position).norm();
 		registerSegment(line.back(), end);
 	}
-	append(line, closed);
+	append(line, closed, ends);
 }
 
-void Tracer::append(const Points& line, bool closed)
+void Tracer::append(const Points& line, bool closed, const std::array<LineEnd, 2>& ends)
 {
 	m_points.insert(m_points.end(), line.begin(), line.end());
 	m_network.offsets.push_back(static_cast<Index>(m_points.size()));
 	m_network.family.push_back(m_family);
 	m_network.closed.push_back(closed);
+	m_network.ends.push_back(ends);
 }
 
 LineNetwork Tracer::run(const Progress& progress)
@@ -416,6 +469,17 @@ constexpr double TargetTolerance = 0.08;
 constexpr int    TargetRounds    = 3;
 
 } // namespace
+
+Eigen::VectorXd arcLengths(const LineNetwork& lines)
+{
+	Eigen::VectorXd arc(lines.vertices.cols());
+	for (Index l = 0; l < lines.lines(); ++l)
+		for (Index v = lines.offsets[l]; v < lines.offsets[l + 1]; ++v)
+			arc[v] = v == lines.offsets[l] ?
+						 0.0 :
+						 arc[v - 1] + (lines.vertices.col(v) - lines.vertices.col(v - 1)).norm();
+	return arc;
+}
 
 LineNetwork traceLines(
 	const PointCloud&           cloud,

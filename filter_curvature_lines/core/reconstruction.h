@@ -37,7 +37,11 @@ struct ReconstructionOptions {
 	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
 	QuadMeshOptions    mesh;
 
-	ReconstructionOptions() { tracing.epsilon = 0.0; }
+	ReconstructionOptions()
+	{
+		tracing.epsilon    = 0.0;
+		tracing.stopFactor = 0.5; // for the mesh fewer ends count more than even gaps
+	}
 };
 
 struct ReconstructionResult {

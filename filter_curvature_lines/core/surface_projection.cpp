@@ -202,6 +202,7 @@ Vector2d doubledAngle(const TangentFrame& frame, const Vector3d& m, const Vector
 struct TensorAt {
 	double   mean = 0.0, magnitude = 0.0;
 	Vector2d deviator = Vector2d::Zero(), line = Vector2d::Zero();
+	Vector2d beside = Vector2d::Zero(); // mean of the points, in kernel widths
 };
 
 // A plane through the values, read at c. Their weighted mean would belong to the mean of the points, which
@@ -232,13 +233,17 @@ TensorAt tensorAt(
 	});
 	TensorAt t;
 	if (moments(0, 0) > 0.0) {
-		Values       values = sums.row(0) / moments(0, 0);
-		const double beside = moments.row(0).tail<2>().norm() / moments(0, 0);
-		if (beside < maxBeside) {
+		Values         values = sums.row(0) / moments(0, 0);
+		const Vector2d beside = moments.row(0).tail<2>().transpose() / moments(0, 0);
+		if (beside.norm() < maxBeside) {
 			moments.diagonal().tail<2>().array() += slopeRidge * moments(0, 0);
 			values = (moments.inverse() * sums).row(0);
 		}
-		t = {values[0], std::max(0.0, values[1]), values.segment<2>(2).transpose(), values.tail<2>().transpose()};
+		t = {values[0],
+			 std::max(0.0, values[1]),
+			 values.segment<2>(2).transpose(),
+			 values.tail<2>().transpose(),
+			 beside.allFinite() ? beside : Vector2d(Vector2d::Zero())};
 	}
 	return t;
 }
@@ -295,6 +300,7 @@ SurfaceSample projectToSurface(
 	sample.k2 = t.mean - 0.5 * difference;
 	sample.d1 = principalDirection(t, frame, support.radius(), field.d1.col(closest));
 	sample.d2 = sample.normal.cross(sample.d1);
+	sample.inwards = frame.toSpace(t.beside);
 	return sample;
 }
 

@@ -58,6 +58,14 @@ RichParameterList parameters(const MeshDocument&)
 		"<li><b>Locally Optimal</b>: as published in 2009</li>"
 		"<li><b>Weighted Average</b>: as published in 2007</li></ul>",
 		true));
+	list.addParam(RichFloat(
+		"stop_factor",
+		Scalarm(defaults.stopFactor),
+		"Stop factor",
+		"A line ends where it comes closer to the next one than this times the distance new lines keep "
+		"(0.1 to 1). Small values let lines run on through narrow places: gaps are less even, and the mesh "
+		"between the lines has more quads (0.5: about 99 %).",
+		true));
 	addUmbilicRatio(list);
 	list.addParam(RichBool(
 		"smooth_directions",
@@ -81,6 +89,7 @@ LineTracingOptions tracingOptions(const Parameters& parameters, double diagonal)
 			"parameter 'max_spacing' is smaller than 'min_spacing'; raise it, or set it to 0 "
 			"(automatic).");
 	options.tolerance  = parameters.real("tolerance", 1e-6, 1.0);
+	options.stopFactor = parameters.real("stop_factor", 0.1, 1.0);
 	options.projection = static_cast<ProjectionKind>(parameters.choice("projection"));
 	return options;
 }
@@ -143,6 +152,16 @@ FilterResults apply(const FilterContext& context)
 	results.count("lines", lines.lines());
 	results.count("lines_family_1", std::count(lines.family.begin(), lines.family.end(), 1));
 	results.count("lines_family_2", std::count(lines.family.begin(), lines.family.end(), 2));
+	const auto ends = [&](LineEnd kind) {
+		Index count = 0;
+		for (const auto& both : lines.ends)
+			count += std::count(both.begin(), both.end(), kind);
+		return count;
+	};
+	results.count("ends_at_lines", ends(LineEnd::Line));
+	results.count("ends_at_rims", ends(LineEnd::Rim));
+	results.count("ends_at_creases", ends(LineEnd::Crease));
+	results.count("ends_at_umbilics", ends(LineEnd::Umbilic));
 	results.count("closed_lines", std::count(lines.closed.begin(), lines.closed.end(), char(1)));
 	results.count("vertices", lines.vertices.cols());
 	results.count("edges", layer.cm.en);

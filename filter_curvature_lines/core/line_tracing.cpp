@@ -74,7 +74,6 @@ public:
 		const LineSpacing&          spacing);
 
 	LineNetwork run(const Progress& progress);
-	Index       countCrossings() const { return m_registry.countCrossings(m_cloud.normals); }
 
 private:
 	using Points = std::vector<FlowPoint>;
@@ -460,7 +459,8 @@ LineNetwork Tracer::run(const Progress& progress)
 		m_network.normals.col(i)  = m_points[i].normal;
 		m_network.curvature[i]    = m_points[i].curvature;
 	}
-	m_network.epsilon = m_spacing.epsilon;
+	m_network.epsilon   = m_spacing.epsilon;
+	m_network.crossings = m_registry.countCrossings(m_cloud.normals);
 	return std::move(m_network);
 }
 
@@ -500,7 +500,7 @@ LineNetwork traceLines(
 			progress.sub(double(round) / rounds, double(round + 1) / rounds, "Tracing lines"));
 		if (options.targetVertices <= 0)
 			return network;
-		const double found = std::max<Index>(1, tracer.countCrossings());
+		const double found = std::max<Index>(1, network.crossings);
 		const double miss  = std::abs(std::log(found / options.targetVertices));
 		if (miss < bestMiss) {
 			bestMiss = miss;

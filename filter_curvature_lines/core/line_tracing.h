@@ -42,6 +42,7 @@ struct LineNetwork {
 	std::vector<char>     closed;            // per line
 	std::vector<std::array<LineEnd, 2>> ends; // per line, before its first and after its last vertex
 	double                epsilon = 0.0;     // the one used, fraction of the diagonal
+	Index                 crossings = 0;     // of the two families, as LineRegistry counts them
 
 	Index lines() const { return static_cast<Index>(family.size()); }
 };

@@ -163,6 +163,7 @@ FilterResults apply(const FilterContext& context)
 	results.count("ends_at_creases", ends(LineEnd::Crease));
 	results.count("ends_at_umbilics", ends(LineEnd::Umbilic));
 	results.count("closed_lines", std::count(lines.closed.begin(), lines.closed.end(), char(1)));
+	results.count("crossings", lines.crossings);
 	results.count("vertices", lines.vertices.cols());
 	results.count("edges", layer.cm.en);
 	results.real("epsilon", lines.epsilon);

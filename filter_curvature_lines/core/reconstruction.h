@@ -40,7 +40,8 @@ struct ReconstructionOptions {
 	ReconstructionOptions()
 	{
 		tracing.epsilon    = 0.0;
-		tracing.stopFactor = 0.5; // for the mesh fewer ends count more than even gaps
+		tracing.stopFactor = meshStopFactor;
+		tracing.gradation  = meshGradation;
 	}
 };
 

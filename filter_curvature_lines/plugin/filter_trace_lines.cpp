@@ -90,6 +90,8 @@ LineTracingOptions tracingOptions(const Parameters& parameters, double diagonal)
 			"(automatic).");
 	options.tolerance  = parameters.real("tolerance", 1e-6, 1.0);
 	options.stopFactor = parameters.real("stop_factor", 0.1, 1.0);
+	if (options.targetVertices > 0) // of a mesh
+		options.gradation = meshGradation;
 	options.projection = static_cast<ProjectionKind>(parameters.choice("projection"));
 	return options;
 }

@@ -174,8 +174,10 @@ void fillPositionField(
 	meshing.anisotropy = options.anisotropy;
 	meshing.noise      = result.noise;
 	meshing.mesh       = options.mesh;
+	meshing.keepLines  = options.keepLines;
 	result.mesh        = buildPositionFieldMesh(
 		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, ""));
+	result.lines       = std::move(result.mesh.lines);
 	clock.book("mesh");
 }
 

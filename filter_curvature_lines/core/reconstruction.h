@@ -36,6 +36,7 @@ struct ReconstructionOptions {
 	CreaseOptions      creases;  // PositionField
 	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
 	QuadMeshOptions    mesh;
+	bool               keepLines = false; // PositionField: its lines as polylines; traced ones are always kept
 
 	ReconstructionOptions()
 	{
@@ -51,7 +52,7 @@ struct ReconstructionResult {
 	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
 	UmbilicRegions     umbilics;
-	LineNetwork        lines;   // TracedLines
+	LineNetwork        lines;   // TracedLines, or if keepLines
 	Creases            creases; // PositionField
 	PositionFieldMeshResult mesh; // TracedLines: without what is particular to position fields
 	double             noise = 0.0; // standard deviation of heights, if robustly cleaned of outliers or noise

@@ -6,7 +6,7 @@
 #include "help_text.h"
 #include "polyline_layer.h"
 
-#include "core/direction_smoothing.h"
+#include "core/reconstruction.h"
 
 namespace curvature_lines {
 
@@ -16,6 +16,17 @@ RichParameterList parameters(const MeshDocument&)
 {
 	const LineTracingOptions defaults;
 	RichParameterList        list;
+	list.addParam(RichEnum(
+		"method",
+		0,
+		QStringList() << "Traced Lines"
+					  << "Position Field",
+		"Method",
+		"<ul><li><b>Traced Lines</b>: one line after the other follows the directions, as published; they are where "
+		"the lines of curvature are</li>"
+		"<li><b>Position Field</b>: the lines of the mesh that Surface Reconstruction makes, all at once and "
+		"evenly spaced; clean the cloud first. The parameters below do not concern it, except epsilon and "
+		"the target number</li></ul>"));
 	list.addParam(RichFloat(
 		"epsilon",
 		Scalarm(defaults.epsilon),
@@ -96,6 +107,18 @@ LineTracingOptions tracingOptions(const Parameters& parameters, double diagonal)
 	return options;
 }
 
+// The lines of the default mesh of the cloud as it is.
+LineNetwork positionFieldLines(
+	const PointCloud& cloud, const LineTracingOptions& tracing, const Progress& progress)
+{
+	ReconstructionOptions options;
+	options.rejectOutliers = false;
+	options.denoise        = false;
+	options.keepLines      = true;
+	options.tracing        = tracing;
+	return reconstruct(cloud, options, progress).lines;
+}
+
 FilterResults apply(const FilterContext& context)
 {
 	const Parameters& parameters = context.parameters;
@@ -128,14 +151,12 @@ FilterResults apply(const FilterContext& context)
 	const VoronoiCells cells(
 		cloud.positions, context.progress.sub(0.5, 0.6, "Finding Voronoi cells"));
 	results.seconds("voronoi", stage.lap());
-	const LineNetwork lines = traceLines(
-		cloud,
-		*curvature.field,
-		estimate.minimum,
-		umbilics,
-		cells,
-		tracingOptions(parameters, estimate.prepared.diagonal),
-		context.progress.sub(0.6, 1.0, "Tracing lines"));
+	const LineTracingOptions options = tracingOptions(parameters, estimate.prepared.diagonal);
+	const Progress           tracing = context.progress.sub(0.6, 1.0, "Tracing lines");
+	const LineNetwork        lines =
+		parameters.choice("method") == 1 ?
+				   positionFieldLines(cloud, options, tracing) :
+				   traceLines(cloud, *curvature.field, estimate.minimum, umbilics, cells, options, tracing);
 	results.seconds("tracing", stage.lap());
 	if (lines.lines() == 0)
 		throw MLException(

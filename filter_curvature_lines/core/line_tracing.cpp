@@ -9,6 +9,7 @@
 
 #include "line_registry.h"
 #include "line_spacing.h"
+#include "surface_flow.h"
 
 namespace curvature_lines {
 
@@ -16,51 +17,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
-constexpr double StartStep       = 0.25;        // at least, of the local spacing: see Tracer()
-constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
-constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of an umbilical region
-constexpr double CloudReach      = 1.5;         // local spacings from the closest point
-constexpr double VoidWidth       = 2.5;         // local spacings that gaps between points of a random cloud may have
-constexpr double VoidSlack       = 1.5;         // local spacings to the closest point beyond one
-constexpr double CreaseCosine    = 0.8;         // normals of points next to each other
-constexpr double MaxLength       = 10.0;        // diagonals
+constexpr double MaxLength       = 10.0;  // diagonals
+constexpr double SameDirection   = 0.5;   // cosine of 60 degrees, of a line that comes back to its start
 constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
 constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in stop distances
 constexpr double ClosingSpread   = 30.0;  // the offset is spread over so many times its length
 constexpr int    RimBisections   = 5;
 constexpr Index  ReportEvery     = 1024;
-
-struct FlowPoint {
-	Vector3d position, normal, direction; // direction of travel
-	double   curvature = 0.0;             // along the line
-	Index    cell      = -1;
-	double   arc       = 0.0;
-	Vector3d inwards   = Vector3d::Zero(); // as SurfaceSample
-};
-
-// The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families apart.
-std::vector<char> swappedRegions(
-	const PointCloud&           cloud,
-	const CurvatureField&       field,
-	const MinimumNeighborhoods& minimum,
-	const UmbilicRegions&       umbilics)
-{
-	std::vector<double> votes(umbilics.regions, 0.0);
-	for (Index i = 0; i < cloud.size(); ++i) {
-		const Index region = umbilics.region[i];
-		if (region < 0)
-			continue;
-		for (Index j : minimum.neighbors[i])
-			if (!umbilics.umbilic[j] && cloud.normals.col(i).dot(cloud.normals.col(j)) > SharpTurnCosine)
-				votes[region] += std::abs(umbilics.d1.col(i).dot(field.d1.col(j))) -
-								 std::abs(umbilics.d1.col(i).dot(field.d2.col(j)));
-	}
-	std::vector<char> swapped(votes.size());
-	for (std::size_t r = 0; r < votes.size(); ++r)
-		swapped[r] = votes[r] < 0.0;
-	return swapped;
-}
 
 class Tracer {
 public:
@@ -82,14 +45,7 @@ private:
 	std::vector<Index> seedsByConfidence() const;
 	void               traceThrough(Index seed, const Progress& progress);
 	LineEnd            traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
-	bool               advance(const FlowPoint& from, FlowPoint& to) const;
 	void               reachOut(const FlowPoint& from, Points& half);
-	bool     sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const;
-	Vector3d directionOf(const SurfaceSample& sample, Index cell) const;
-	Vector3d regionDirection(Index cell) const;
-	bool     leftCloud(const FlowPoint& point) const;
-	LineEnd  edgeAt(Index cell) const;
-	bool     endsAtUmbilic(const FlowPoint& from, const FlowPoint& to) const;
 	bool     occupied(const FlowPoint& point, bool approachesStart);
 	void     registerSegment(const FlowPoint& from, const FlowPoint& to);
 	void     closeUp(const FlowPoint& start, Points& half);
@@ -100,13 +56,10 @@ private:
 
 	const PointCloud&           m_cloud;
 	const CurvatureField&       m_field;
-	const MinimumNeighborhoods& m_minimum;
 	const UmbilicRegions&       m_umbilics;
-	const VoronoiCells&         m_cells;
 	const LineTracingOptions&   m_options;
 	const LineSpacing&          m_spacing;
-	std::vector<double>         m_step;    // N: step before adaptation
-	std::vector<char>           m_swapped; // per umbilical region: its d1 continues the d2 around it
+	SurfaceFlow                 m_flow;
 	LineRegistry                m_registry;
 
 	// The half line being traced.
@@ -127,24 +80,12 @@ Tracer::Tracer(
 	const LineSpacing&          spacing) :
 		m_cloud(cloud),
 		m_field(field),
-		m_minimum(minimum),
 		m_umbilics(umbilics),
-		m_cells(cells),
 		m_options(options),
 		m_spacing(spacing),
-		m_step(cloud.size()),
-		m_swapped(swappedRegions(cloud, field, minimum, umbilics)),
+		m_flow(cloud, field, minimum, umbilics, cells, {options.tolerance, options.projection}),
 		m_registry(cloud, minimum)
 {
-	for (Index i = 0; i < cloud.size(); ++i) {
-		double nearest2 = HUGE_VAL;
-		for (Index j : cells.neighbors(i))
-			nearest2 = std::min(nearest2, (cells.site(j) - cells.site(i)).squaredNorm());
-		const double local = minimum.spacing[i] > 0.0 ? minimum.spacing[i] : minimum.medianSpacing;
-		// A09 starts with half the distance to the nearest point. In random clouds that is often next to
-		// nothing, and what a change of the support moves a projected point weighs more than the step.
-		m_step[i] = std::clamp(0.5 * std::sqrt(nearest2), StartStep * local, MaxStep * local);
-	}
 }
 
 bool Tracer::isSeed(Index i) const
@@ -166,105 +107,6 @@ std::vector<Index> Tracer::seedsByConfidence() const
 		return m_field.confidence[a] > m_field.confidence[b];
 	});
 	return seeds;
-}
-
-Vector3d Tracer::regionDirection(Index cell) const
-{
-	const bool first = (m_family == 1) != bool(m_swapped[m_umbilics.region[cell]]);
-	return (first ? m_umbilics.d1 : m_umbilics.d2).col(cell);
-}
-
-// The tensor says nothing in umbilical regions; there the axes of the region lead.
-Vector3d Tracer::directionOf(const SurfaceSample& sample, Index cell) const
-{
-	if (m_umbilics.region[cell] < 0)
-		return m_family == 1 ? sample.d1 : sample.d2;
-	const Vector3d axis = regionDirection(cell);
-	return (axis - axis.dot(sample.normal) * sample.normal).normalized();
-}
-
-bool Tracer::sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const
-{
-	const Index         closest = m_cells.locate(position, previous.cell);
-	const SurfaceSample sample =
-		projectToSurface(m_cloud, m_field, position, closest, m_options.projection);
-	result.position  = sample.position;
-	result.normal    = sample.normal;
-	result.cell      = m_cells.locate(sample.position, closest);
-	result.curvature = m_family == 1 ? sample.k1 : sample.k2;
-	result.direction = directionOf(sample, closest);
-	// Principal directions have no sign: the line keeps its own.
-	if (result.direction.dot(previous.direction) < 0.0)
-		result.direction = -result.direction;
-	result.inwards = sample.inwards;
-	return result.direction.dot(previous.direction) > SharpTurnCosine &&
-		   result.normal.dot(previous.normal) > SharpTurnCosine;
-}
-
-// One step of the second-order scheme A09 uses for its error estimate: along the mean of the directions at
-// both ends. The published backward step bends every line inwards by its own error, and closed lines miss
-// their start.
-bool Tracer::advance(const FlowPoint& from, FlowPoint& to) const
-{
-	double    step = m_step[from.cell];
-	FlowPoint predicted;
-	if (!sampleAt(from.position + step * from.direction, from, predicted))
-		return false;
-	// Delta = |c' - c''| / |c' - c_{i-1}|, with c' along the new direction and c'' along the mean.
-	const double delta = 0.5 * (predicted.direction - from.direction).norm();
-	if (delta > m_options.tolerance) {
-		const double least = MinStep * m_minimum.spacing[from.cell];
-		step = std::min(step, std::max(least, step * std::sqrt(m_options.tolerance / delta)));
-		if (!sampleAt(from.position + step * from.direction, from, predicted))
-			return false;
-	}
-	const Vector3d chord = 0.5 * step * (from.direction + predicted.direction);
-	if (!sampleAt(from.position + chord, from, to))
-		return false;
-	const double moved = (to.position - from.position).dot(chord) / chord.norm();
-	to.arc             = from.arc + m_side * moved;
-	return moved > 0.2 * step; // the projection may not undo the step
-}
-
-bool Tracer::leftCloud(const FlowPoint& point) const
-{
-	const double distance = (point.position - m_cloud.positions.col(point.cell)).norm();
-	const double local    = m_minimum.spacing[point.cell];
-	if (distance > CloudReach * local)
-		return true;
-	const double aside = point.inwards.norm();
-	if (aside < rimOffset || point.inwards.dot(point.direction) > 0.0)
-		return false;
-	// All points lie behind. At a rim there are none beyond, either.
-	const Vector3d beyond = point.position - VoidWidth * local / aside * point.inwards;
-	const Index    next   = m_cells.locate(beyond, point.cell);
-	const double   around = VoidSlack * std::max(local, m_minimum.spacing[next]);
-	return (beyond - m_cells.site(next)).norm() > around ||
-		   m_cloud.normals.col(next).dot(point.normal) < SharpTurnCosine;
-}
-
-// What ends the surface where the points are all on one side.
-LineEnd Tracer::edgeAt(Index cell) const
-{
-	for (Index j : m_cells.neighbors(cell)) {
-		const bool near = (m_cells.site(j) - m_cells.site(cell)).norm() < VoidWidth * m_minimum.spacing[cell];
-		const double cosine = m_cloud.normals.col(j).dot(m_cloud.normals.col(cell));
-		if (near && cosine < CreaseCosine && cosine > -SharpTurnCosine) // not the other side of a sheet
-			return LineEnd::Crease;
-	}
-	return LineEnd::Rim;
-}
-
-// A09 ends lines at umbilics and, from inside a region, at its border, because directions jump there. Where
-// they do not (flat parts that go over into singly curved ones, patches that only noise made umbilic) the line
-// goes on; ending it would tear the mesh.
-bool Tracer::endsAtUmbilic(const FlowPoint& from, const FlowPoint& to) const
-{
-	if (m_umbilics.singular[to.cell])
-		return true;
-	const bool border = m_umbilics.region[from.cell] != m_umbilics.region[to.cell];
-	const bool single = m_umbilics.umbilic[to.cell] && m_umbilics.region[to.cell] < 0;
-	return (border || single) && to.direction.dot(from.direction) < BridgeCosine;
 }
 
 bool Tracer::occupied(const FlowPoint& point, bool approachesStart)
@@ -304,12 +146,12 @@ void Tracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 // A step that ended beyond a rim or crease, again as far as it goes this side of it.
 void Tracer::reachOut(const FlowPoint& from, Points& half)
 {
-	const double step = m_step[from.cell];
+	const double step = m_flow.step(from.cell);
 	FlowPoint    best, tried;
 	double       reached = 0.0, beyond = 1.0;
 	for (int k = 0; k < RimBisections; ++k) {
 		const double middle = 0.5 * (reached + beyond);
-		if (sampleAt(from.position + middle * step * from.direction, from, tried) && !leftCloud(tried)) {
+		if (m_flow.sampleAt(from.position + middle * step * from.direction, from, tried) && !m_flow.leftCloud(tried)) {
 			reached = middle;
 			best    = tried;
 		}
@@ -319,7 +161,7 @@ void Tracer::reachOut(const FlowPoint& from, Points& half)
 	}
 	const double moved = reached > 0.0 ? (best.position - from.position).dot(from.direction) : 0.0;
 	best.arc           = from.arc + m_side * moved;
-	if (moved <= MinStep * m_minimum.spacing[from.cell] || occupied(best, false))
+	if (moved <= m_flow.leastStep(from.cell) || occupied(best, false))
 		return;
 	registerSegment(from, best);
 	half.push_back(best);
@@ -331,12 +173,12 @@ LineEnd Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& 
 {
 	FlowPoint front = start, next;
 	while (std::abs(front.arc) < MaxLength * m_spacing.diagonal) {
-		const bool onwards = advance(front, next);
-		if (!onwards || leftCloud(next)) {
+		const bool onwards = m_flow.advance(front, m_side, next);
+		if (!onwards || m_flow.leftCloud(next)) {
 			reachOut(front, half);
-			return onwards ? edgeAt(next.cell) : LineEnd::Crease;
+			return !onwards || m_flow.isCrease(next.cell) ? LineEnd::Crease : LineEnd::Rim;
 		}
-		if (endsAtUmbilic(front, next))
+		if (m_flow.endsAtUmbilic(front, next))
 			return LineEnd::Umbilic;
 		// A line that comes back next to its start would be stopped by it. The offset is noise, and closing
 		// is better than two ends side by side. It is less than the room other lines leave.
@@ -347,7 +189,7 @@ LineEnd Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& 
 		const double   d       = std::max(distance(next.cell), 2.0 * step);
 		const bool approaches  = m_side > 0.0 && next.arc > 2.0 * step && ahead > 0.0 &&
 								ahead < OwnArc * d && aside < OwnDistance * m_options.stopFactor * d &&
-								next.direction.dot(start.direction) > SharpTurnCosine;
+								next.direction.dot(start.direction) > SameDirection;
 		if (occupied(next, approaches))
 			return LineEnd::Line;
 		registerSegment(front, next);
@@ -372,7 +214,7 @@ void Tracer::closeUp(const FlowPoint& start, Points& half)
 		if (point.arc <= from)
 			continue;
 		FlowPoint moved = point;
-		if (sampleAt(point.position + (point.arc - from) / (last.arc - from) * aside, point, moved)) {
+		if (m_flow.sampleAt(point.position + (point.arc - from) / (last.arc - from) * aside, point, moved)) {
 			moved.arc = point.arc;
 			point     = moved;
 		}
@@ -385,10 +227,9 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 	start.cell      = seed;
 	start.normal    = m_cloud.normals.col(seed);
 	m_side          = 1.0;
-	start.direction = m_umbilics.region[seed] >= 0 ?
-						  regionDirection(seed) :
-						  Vector3d((m_family == 1 ? m_field.d1 : m_field.d2).col(seed));
-	if (!sampleAt(m_cloud.positions.col(seed), start, start))
+	start.family    = m_family;
+	start.direction = m_flow.directionAt(seed, m_family);
+	if (!m_flow.sampleAt(m_cloud.positions.col(seed), start, start))
 		return;
 	ProximityQuery query;
 	query.position = start.position;

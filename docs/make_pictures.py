@@ -20,6 +20,8 @@ FANDISK_CLEAN = "fandisk_clean.obj"
 TRACED = (1066, 800)
 COW, BUNNY, ARMADILLO = "cow_loop2_46433_derived.ply", "bunny_oriented.ply", "armadillo.obj"
 HAND, TOOTH = "hand_closed.obj", "tooth_pongo_EM.ply"
+TRACED_CROSSINGS = 4000
+ENDS = ("lines", "rims", "creases", "umbilics")
 Y_UP = (0.0, 1.0, 0.0)
 VIEWS = {
     FANDISK: ((-0.6, 0.5, 1.0), Y_UP),
@@ -136,6 +138,22 @@ def quads(path: Path) -> Path:
     return picture
 
 
+def lines_of_curvature(path: Path) -> Path:
+    """Both families traced on the points alone, drawn over them."""
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(path))
+    if meshes.current_mesh().face_number():
+        meshes = loaded(path)
+        forget_triangles(meshes)
+    cloud = meshes.current_mesh_id()
+    report = meshes.generate_curvature_lines(target_vertices=TRACED_CROSSINGS)
+    print(f"{path.name}: {report['lines']} lines, {report['closed_lines']} closed, ends {[report[f'ends_at_{what}'] for what in ENDS]} at {ENDS}")
+    view, up = VIEWS.get(path.name, (None, None))
+    picture = OUT / f"{path.stem}_lines.png"
+    render(picture, meshes.mesh(cloud), meshes.current_mesh(), view=view, up=up, size=PANEL)
+    return picture
+
+
 def gallery(folder: Path, topics: list[str]) -> None:
     OUT.mkdir(exist_ok=True)
     if "scans" in topics:
@@ -148,13 +166,16 @@ def gallery(folder: Path, topics: list[str]) -> None:
         write_strips("gallery_ray_tracing", columns, 1500, few_colors=False)
     if "curvature" in topics:
         write_strips("gallery_curvature", [[curvature(folder / name) for name in (RANGE_MAP, ANGEL, DRAGON)]], 1600)
+    if "lines" in topics:
+        rows = [(HAND, TOOTH), (RANGE_MAP, BUNNY)]
+        write_strips("gallery_lines", [[lines_of_curvature(folder / name) for name in row] for row in rows], 1800)
     if "quads" in topics:
         rows = [(BUNNY, ARMADILLO, COW), (HAND, TOOTH, ANGEL)]
         write_strips("gallery_quads", [[quads(folder / name) for name in row] for row in rows], 1800)
 
 
 def main() -> None:
-    topics = ["scans", "meshes", "curvature", "ray_tracing", "quads"]
+    topics = ["scans", "meshes", "curvature", "ray_tracing", "lines", "quads"]
     parser = argparse.ArgumentParser(description=__doc__)
     kinds = parser.add_subparsers(dest="kind", required=True)
     kinds.add_parser("pipeline", help="from what scripts/demo.sh left in out/")

@@ -376,7 +376,7 @@ CurvatureField adaptiveCurvature(
 	const AdaptiveSurface surface =
 		adaptiveSurface(cloud, search, options, progress.sub(0.0, 0.95, progressLabel));
 	CurvatureField        field;
-	for (auto* values : {&field.k1, &field.k2, &field.error, &field.confidence})
+	for (auto* values : {&field.k1, &field.k2, &field.error, &field.confidence, &field.height})
 		values->setZero(n);
 	for (auto* vectors : {&field.d1, &field.d2})
 		vectors->resize(3, n);
@@ -397,6 +397,7 @@ CurvatureField adaptiveCurvature(
 		}
 		setPrincipal(element, given, i, field);
 		field.correctedNormals.col(i) = element.normal;
+		field.height[i]               = element.normal.dot(element.position - cloud.positions.col(i));
 		// Of a symmetric 2 x 2 matrix with independent errors of the same size in every direction, k1 - k2
 		// has two thirds of the variance.
 		field.error[i] = std::sqrt(2.0 / 3.0 * surface.variance[i]);

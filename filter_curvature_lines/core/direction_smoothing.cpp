@@ -11,6 +11,7 @@
 #include <Eigen/IterativeLinearSolvers>
 
 #include "box_minimization.h"
+#include "direction_trust.h"
 
 namespace curvature_lines {
 
@@ -20,7 +21,6 @@ using Complex = std::complex<double>;
 
 constexpr double maxNormalCosine  = 0.5;  // 60 degrees: beyond, there is an edge between two points
 constexpr Index  maxPartners      = 32;   // of one point's own choice; bounds memory, not the reach
-constexpr double sureErrors       = 6.0;  // a direction whose k1 - k2 is this many errors counts half
 constexpr double startShift       = 1e-3; // keeps the linear start well-posed without a data term
 constexpr int    linearIterations = 200;
 
@@ -77,31 +77,6 @@ NeighborLists symmetrized(const NeighborLists& lists)
 	return NeighborLists::fromRows(rows);
 }
 
-// phi_ij: theta_i - theta_j of parallel directions, after the smallest rotation between the tangent
-// planes. A09 measures theta_i and theta_j against the projection of p_i - p_j in each plane. To
-// first order this is the same, but where the surface bends or twists that chord is not parallel to
-// itself at its two ends.
-double transportAngle(const TangentFrame& a, const TangentFrame& b)
-{
-	const Eigen::Vector3d u =
-		a.u - b.n.dot(a.u) / (1.0 + a.n.dot(b.n)) * (a.n + b.n); // a.u rotated into b's plane
-	return -std::atan2(u.dot(b.v), u.dot(b.u));
-}
-
-// How well determined a direction is, 0 at an umbilic to 2, in place of A09's |k1| / |k2|, which is 1 at
-// umbilics and unbounded on cylinders. The standard deviation of a direction is that of k1 - k2 over
-// 2 |k1 - k2|. Where that is not known, the anisotropy has to do; it is 2 where k1 = -k2.
-double ownWeight(const CurvatureField& field, Index i)
-{
-	if (field.status[i] == PointStatus::TooFewNeighbors || field.status[i] == PointStatus::Invalid)
-		return 0.0;
-	const double k1 = field.k1[i], k2 = field.k2[i], error = field.error[i];
-	const double square = (k1 - k2) * (k1 - k2);
-	const double doubt  = error > 0.0 ? 0.5 * sureErrors * sureErrors * error * error + 0.5 * square :
-										k1 * k1 + k2 * k2;
-	return doubt > 0.0 ? square / doubt : 0.0;
-}
-
 Eigen::VectorXcd doubledAngles(const Eigen::VectorXd& theta)
 {
 	Eigen::VectorXcd u(theta.size());
@@ -119,13 +94,17 @@ DirectionEnergy::DirectionEnergy(
 	for (Index i = 0; i < cloud.size(); ++i) {
 		const Eigen::Vector2d d = TangentFrame(cloud.normals.col(i)).toPlane(field.d1.col(i));
 		m_theta0[i]             = std::atan2(d.y(), d.x());
-		m_omega[i]              = ownWeight(field, i);
 	}
-	buildCoupling(cloud, field, progress);
+	const DirectionTrust trust = directionTrust(cloud, field, m_theta0);
+	m_omega                    = trust.weight;
+	buildCoupling(cloud, field, trust.turning, progress);
 }
 
 void DirectionEnergy::buildCoupling(
-	const PointCloud& cloud, const CurvatureField& field, const Progress& progress)
+	const PointCloud&       cloud,
+	const CurvatureField&   field,
+	const Eigen::Matrix3Xd& turning,
+	const Progress&         progress)
 {
 	const Index                     n = cloud.size();
 	std::vector<std::vector<Index>> chosen(n);
@@ -152,8 +131,10 @@ void DirectionEnergy::buildCoupling(
 			const double w = 1.0 / (row.size() - 1) + 1.0 / (pattern[j].size() - 1);
 			const TangentFrame other(cloud.normals.col(j));
 			// From the lower index, so that both ends have the same number to the last bit.
-			const double phi = i < j ? transportAngle(frame, other) : -transportAngle(other, frame);
-			values[k]        = std::polar(w, 2.0 * phi);
+			const double phi  = i < j ? transportAngle(frame, other) : -transportAngle(other, frame);
+			const double turn = 0.5 * (turning.col(i) + turning.col(j))
+										  .dot(cloud.positions.col(i) - cloud.positions.col(j));
+			values[k]        = std::polar(w, 2.0 * (phi + turn));
 			m_totalWeight[i] += w;
 		}
 	});

@@ -50,7 +50,11 @@ public:
 private:
 	using Hermitian = Eigen::SparseMatrix<std::complex<double>, Eigen::RowMajor>;
 
-	void buildCoupling(const PointCloud& cloud, const CurvatureField& field, const Progress& progress);
+	void buildCoupling(
+		const PointCloud&       cloud,
+		const CurvatureField&   field,
+		const Eigen::Matrix3Xd& turning,
+		const Progress&         progress);
 
 	double          m_alpha;
 	Eigen::VectorXd m_theta0, m_omega;

@@ -14,7 +14,6 @@ constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cell
 constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
 constexpr double AutomaticMax = 0.1; // bounding-box diagonals
 constexpr double TargetRange  = 2.0; // with a target, up to so many times the mean distance and down to 1 / it
-constexpr double Gradation    = 0.25;
 constexpr int    BisectionSteps = 20; // to 3e-5 of epsilon
 // Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
 // slices' neighbours is 1.22 / sqrt(density).
@@ -24,9 +23,12 @@ constexpr double RealisedDistance = 1.15;
 
 // d(kappa) jumps to its upper bound and back within a few spacings where the curvature across changes sign,
 // and no line would get through. Mesh sizing fields are graded for that reason: d grows by no more than
-// `Gradation` times the distance.
+// `gradation` times the distance.
 void limitGrowth(
-	const PointCloud& cloud, const MinimumNeighborhoods& minimum, std::vector<double>& d)
+	const PointCloud&           cloud,
+	const MinimumNeighborhoods& minimum,
+	double                      gradation,
+	std::vector<double>&        d)
 {
 	using Entry = std::pair<double, Index>;
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
@@ -34,7 +36,7 @@ void limitGrowth(
 	const auto relax = [&](Index i) {
 		for (Index j : minimum.neighbors[i]) {
 			const double limit =
-				d[i] + Gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
+				d[i] + gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
 			if (limit < d[j]) {
 				d[j] = limit;
 				queue.emplace(limit, j);
@@ -57,7 +59,8 @@ std::array<std::vector<double>, 2> distances(
 	const MinimumNeighborhoods& minimum,
 	double                      epsilon,
 	double                      minSpacing,
-	double                      maxSpacing)
+	double                      maxSpacing,
+	double                      gradation)
 {
 	std::array<std::vector<double>, 2> result;
 	result[0].resize(field.size());
@@ -66,8 +69,8 @@ std::array<std::vector<double>, 2> distances(
 		result[0][i] = lineSpacing(field.k2[i], epsilon, minSpacing, maxSpacing);
 		result[1][i] = lineSpacing(field.k1[i], epsilon, minSpacing, maxSpacing);
 	}
-	limitGrowth(cloud, minimum, result[0]);
-	limitGrowth(cloud, minimum, result[1]);
+	limitGrowth(cloud, minimum, gradation, result[0]);
+	limitGrowth(cloud, minimum, gradation, result[1]);
 	return result;
 }
 
@@ -143,7 +146,8 @@ LineSpacing chooseLineSpacing(
 	result.diagonal = diagonal;
 	result.epsilon  = options.epsilon * diagonal;
 	const auto at   = [&](double epsilon) {
-		return distances(cloud, field, minimum, epsilon, bounds.least, bounds.most);
+		return distances(
+			cloud, field, minimum, epsilon, bounds.least, bounds.most, options.gradation);
 	};
 	if (crossings > 0.0) {
 		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);

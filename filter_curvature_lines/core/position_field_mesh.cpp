@@ -9,6 +9,7 @@
 
 #include "feature_alignment.h"
 #include "polygon_splitting.h"
+#include "position_field_lines.h"
 #include "quad_cleanup.h"
 #include "surface_projection.h"
 
@@ -20,6 +21,7 @@ constexpr double countTolerance = 0.03; // beyond, the density is corrected once
 constexpr double closedRim      = 12.0; // edges of the mesh, as of traced lines
 
 struct Traced {
+	SurfaceCurves      curves;
 	SurfaceArrangement arrangement; // its mesh cleaned up
 	Index              lineEnds = 0;
 };
@@ -34,10 +36,10 @@ Traced trace(
 {
 	const PositionField positions =
 		positionField(scaffold.mesh, field, density, pins, options.phases);
-	Traced traced = {
-		arrangeOnSurface(
-			scaffold.mesh, field.normals, features, integerLines(scaffold.mesh, field, positions)),
-		positions.lineEnds};
+	Traced traced;
+	traced.curves      = integerLines(scaffold.mesh, field, positions);
+	traced.arrangement = arrangeOnSurface(scaffold.mesh, field.normals, features, traced.curves);
+	traced.lineEnds    = positions.lineEnds;
 	traced.arrangement.mesh = cleanUpQuads(traced.arrangement.mesh, traced.arrangement.onFeature);
 	return traced;
 }
@@ -116,6 +118,10 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	result.repairedComponents = traced.arrangement.repairedComponents;
 	result.droppedComponents += traced.arrangement.lostComponents;
 	progress.report(0.9);
+	if (options.keepLines) {
+		result.lines           = linesOf(traced.curves, scaffold, field, cloud, curvature);
+		result.lines.crossings = result.crossings;
+	}
 
 	const std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
 	result.mesh                       = std::move(traced.arrangement.mesh);

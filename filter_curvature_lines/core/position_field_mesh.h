@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "line_tracing.h"
 #include "position_field.h"
 #include "quad_mesh.h"
 #include "scaffold.h"
@@ -16,6 +17,7 @@ struct PositionFieldMeshOptions {
 	ScaffoldOptions scaffold;         // its target and noise are set from the above
 	PositionFieldOptions phases;
 	QuadMeshOptions      mesh;
+	bool                 keepLines = false; // as polylines, beside the mesh
 };
 
 struct PositionFieldMeshResult : QuadMeshResult {
@@ -24,6 +26,7 @@ struct PositionFieldMeshResult : QuadMeshResult {
 	Index droppedComponents  = 0; // too small for a mesh, or without any line
 	Index repairedComponents = 0;
 	Index filledHoles = 0, lostCreaseEdges = 0;
+	LineNetwork lines; // if keepLines
 };
 
 // The cloud is clean and its normals those of the surface.

@@ -174,8 +174,10 @@ void fillPositionField(
 	meshing.anisotropy = options.anisotropy;
 	meshing.noise      = result.noise;
 	meshing.mesh       = options.mesh;
+	meshing.keepLines  = options.keepLines;
 	result.mesh        = buildPositionFieldMesh(
 		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, ""));
+	result.lines       = std::move(result.mesh.lines);
 	clock.book("mesh");
 }
 
@@ -236,6 +238,7 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 		around.reset();
 		result.cloud   = {std::move(cleaned.positions), std::move(cleaned.normals)};
 		result.rmsMove = cleaned.rmsMove;
+		result.field.height.resize(0); // of the points as they were
 		if (cleaned.noise > 0.0)
 			result.noise = cleaned.noise;
 		clock.book("denoising");

@@ -36,8 +36,14 @@ struct ReconstructionOptions {
 	CreaseOptions      creases;  // PositionField
 	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
 	QuadMeshOptions    mesh;
+	bool               keepLines = false; // PositionField: its lines as polylines; traced ones are always kept
 
-	ReconstructionOptions() { tracing.epsilon = 0.0; }
+	ReconstructionOptions()
+	{
+		tracing.epsilon    = 0.0;
+		tracing.stopFactor = meshStopFactor;
+		tracing.gradation  = meshGradation;
+	}
 };
 
 struct ReconstructionResult {
@@ -46,7 +52,7 @@ struct ReconstructionResult {
 	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
 	UmbilicRegions     umbilics;
-	LineNetwork        lines;   // TracedLines
+	LineNetwork        lines;   // TracedLines, or if keepLines
 	Creases            creases; // PositionField
 	PositionFieldMeshResult mesh; // TracedLines: without what is particular to position fields
 	double             noise = 0.0; // standard deviation of heights, if robustly cleaned of outliers or noise

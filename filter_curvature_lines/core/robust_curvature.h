@@ -47,6 +47,9 @@ struct CurvatureField {
 	// The affine model's normal at p_i: unit(sum_j W_j (n_j - X d_j)) (A09 end of section 3; R07).
 	// Kept beside the input normals; the caller decides whether to adopt it. Replaces wrong input normals.
 	Eigen::Matrix3Xd correctedNormals; // 3 x N unit
+	// N, height of the surface fitted around p_i above it, along correctedNormals (length): far less noisy than
+	// the point. Empty where none was fitted, or after the points moved.
+	Eigen::VectorXd  height;
 	Index iterations = 0;              // largest number of IRLS iterations any point needed
 
 	Index size() const { return static_cast<Index>(k1.size()); }

@@ -18,8 +18,13 @@ struct SurfaceSample {
 	Eigen::Vector3d d1 = Eigen::Vector3d::Zero(); // unit principal directions, d2 = n x d1; sign arbitrary
 	Eigen::Vector3d d2 = Eigen::Vector3d::Zero();
 	double k1 = 0.0, k2 = 0.0;
+	// Tangent, from here to the mean of the points around, in widths of their kernel: rimOffset long at a straight rim
+	// or crease, since points across a crease do not count. 0 where there is only one point.
+	Eigen::Vector3d inwards = Eigen::Vector3d::Zero();
 	Index  closest = -1;     // the cloud point whose statistical weights were used (given by the caller)
 };
+
+constexpr double rimOffset = 0.56; // 1 / sqrt(pi): of a half plane
 
 // `closest`: the cloud point nearest to `position` (its Voronoi cell). The support are the points
 // with positive statistical weight there, and itself; opposing normals are left out. Where the

@@ -80,7 +80,7 @@ RichParameterList parameters(const MeshDocument&)
 		"keep_intermediate_layers",
 		false,
 		"Keep intermediate layers",
-		"Add the cleaned cloud, with its curvature, and traced lines as layers of their own."));
+		"Add the cleaned cloud, with its curvature, and the lines as layers of their own."));
 	return list;
 }
 
@@ -95,6 +95,7 @@ ReconstructionOptions reconstructionOptions(const Parameters& parameters)
 	options.smoothDirections       = parameters.flag("smooth_directions");
 	options.curvature.scaleMode    = scaleMode(parameters);
 	options.mesh                   = meshOptions(parameters);
+	options.keepLines              = parameters.flag("keep_intermediate_layers");
 	options.tracing.targetVertices = parameters.integer("target_vertices", 0, 10000000);
 	options.tracing.epsilon        = parameters.real("epsilon", 0.0, 0.5);
 	return options;

@@ -6,7 +6,7 @@
 #include "help_text.h"
 #include "polyline_layer.h"
 
-#include "core/direction_smoothing.h"
+#include "core/reconstruction.h"
 
 namespace curvature_lines {
 
@@ -16,6 +16,17 @@ RichParameterList parameters(const MeshDocument&)
 {
 	const LineTracingOptions defaults;
 	RichParameterList        list;
+	list.addParam(RichEnum(
+		"method",
+		0,
+		QStringList() << "Traced Lines"
+					  << "Position Field",
+		"Method",
+		"<ul><li><b>Traced Lines</b>: one line after the other follows the directions, as published; they are where "
+		"the lines of curvature are</li>"
+		"<li><b>Position Field</b>: the lines of the mesh that Surface Reconstruction makes, all at once and "
+		"evenly spaced; clean the cloud first. The parameters below do not concern it, except epsilon and "
+		"the target number</li></ul>"));
 	list.addParam(RichFloat(
 		"epsilon",
 		Scalarm(defaults.epsilon),
@@ -58,6 +69,14 @@ RichParameterList parameters(const MeshDocument&)
 		"<li><b>Locally Optimal</b>: as published in 2009</li>"
 		"<li><b>Weighted Average</b>: as published in 2007</li></ul>",
 		true));
+	list.addParam(RichFloat(
+		"stop_factor",
+		Scalarm(defaults.stopFactor),
+		"Stop factor",
+		"A line ends where it comes closer to the next one than this times the distance new lines keep "
+		"(0.1 to 1). Small values let lines run on through narrow places: gaps are less even, and the mesh "
+		"between the lines has more quads (0.5: about 99 %).",
+		true));
 	addUmbilicRatio(list);
 	list.addParam(RichBool(
 		"smooth_directions",
@@ -81,8 +100,23 @@ LineTracingOptions tracingOptions(const Parameters& parameters, double diagonal)
 			"parameter 'max_spacing' is smaller than 'min_spacing'; raise it, or set it to 0 "
 			"(automatic).");
 	options.tolerance  = parameters.real("tolerance", 1e-6, 1.0);
+	options.stopFactor = parameters.real("stop_factor", 0.1, 1.0);
+	if (options.targetVertices > 0) // of a mesh
+		options.gradation = meshGradation;
 	options.projection = static_cast<ProjectionKind>(parameters.choice("projection"));
 	return options;
+}
+
+// The lines of the default mesh of the cloud as it is.
+LineNetwork positionFieldLines(
+	const PointCloud& cloud, const LineTracingOptions& tracing, const Progress& progress)
+{
+	ReconstructionOptions options;
+	options.rejectOutliers = false;
+	options.denoise        = false;
+	options.keepLines      = true;
+	options.tracing        = tracing;
+	return reconstruct(cloud, options, progress).lines;
 }
 
 FilterResults apply(const FilterContext& context)
@@ -117,14 +151,12 @@ FilterResults apply(const FilterContext& context)
 	const VoronoiCells cells(
 		cloud.positions, context.progress.sub(0.5, 0.6, "Finding Voronoi cells"));
 	results.seconds("voronoi", stage.lap());
-	const LineNetwork lines = traceLines(
-		cloud,
-		*curvature.field,
-		estimate.minimum,
-		umbilics,
-		cells,
-		tracingOptions(parameters, estimate.prepared.diagonal),
-		context.progress.sub(0.6, 1.0, "Tracing lines"));
+	const LineTracingOptions options = tracingOptions(parameters, estimate.prepared.diagonal);
+	const Progress           tracing = context.progress.sub(0.6, 1.0, "Tracing lines");
+	const LineNetwork        lines =
+		parameters.choice("method") == 1 ?
+				   positionFieldLines(cloud, options, tracing) :
+				   traceLines(cloud, *curvature.field, estimate.minimum, umbilics, cells, options, tracing);
 	results.seconds("tracing", stage.lap());
 	if (lines.lines() == 0)
 		throw MLException(
@@ -143,7 +175,18 @@ FilterResults apply(const FilterContext& context)
 	results.count("lines", lines.lines());
 	results.count("lines_family_1", std::count(lines.family.begin(), lines.family.end(), 1));
 	results.count("lines_family_2", std::count(lines.family.begin(), lines.family.end(), 2));
+	const auto ends = [&](LineEnd kind) {
+		Index count = 0;
+		for (const auto& both : lines.ends)
+			count += std::count(both.begin(), both.end(), kind);
+		return count;
+	};
+	results.count("ends_at_lines", ends(LineEnd::Line));
+	results.count("ends_at_rims", ends(LineEnd::Rim));
+	results.count("ends_at_creases", ends(LineEnd::Crease));
+	results.count("ends_at_umbilics", ends(LineEnd::Umbilic));
 	results.count("closed_lines", std::count(lines.closed.begin(), lines.closed.end(), char(1)));
+	results.count("crossings", lines.crossings);
 	results.count("vertices", lines.vertices.cols());
 	results.count("edges", layer.cm.en);
 	results.real("epsilon", lines.epsilon);

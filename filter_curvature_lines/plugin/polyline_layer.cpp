@@ -128,11 +128,9 @@ void writeLines(
 	auto family = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_family");
 	auto closed = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_closed");
 	auto length = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_arc_length");
+	const Eigen::VectorXd arc = arcLengths(lines);
 	for (Index l = 0; l < lines.lines(); ++l) {
-		double walked = 0.0;
 		for (Index v = lines.offsets[l]; v < lines.offsets[l + 1]; ++v) {
-			if (v > lines.offsets[l])
-				walked += (lines.vertices.col(v) - lines.vertices.col(v - 1)).norm();
 			CVertexO& vertex = mesh.vert[v];
 			vertex.P()       = toPoint(frame.toModel(lines.vertices.col(v)));
 			vertex.N()       = toPoint(lines.normals.col(v));
@@ -141,7 +139,7 @@ void writeLines(
 			id[v]            = Scalarm(l);
 			family[v]        = Scalarm(lines.family[l]);
 			closed[v]        = Scalarm(lines.closed[l]);
-			length[v]        = Scalarm(walked * frame.diagonal);
+			length[v]        = Scalarm(arc[v] * frame.diagonal);
 		}
 	}
 	writeEdges(mesh, lines.offsets, lines.closed);

@@ -221,6 +221,7 @@ TEST(DirectionSmoothing, FollowsRigidMotionAndOrderOfPoints)
 		moved.field.d1.col(k)        = rotation * exact.field.d1.col(i);
 		moved.field.k1[k]            = exact.field.k1[i];
 		moved.field.k2[k]            = exact.field.k2[i];
+		moved.field.radius[k]        = exact.field.radius[i];
 	}
 	// Regions of up to 32 points, so that no choice by index is made.
 	std::vector<std::vector<Index>> small(n);
@@ -300,9 +301,9 @@ TEST(DirectionSmoothing, SurvivesPointsWithoutPartners)
 TEST(DirectionSmoothing, CanBeCancelled)
 {
 	const ExactCloud exact = noisyDirections("torus", 10.0, 600);
-	const Progress   cancel([](double fraction, const char*) { return fraction < 0.5; });
+	const Progress   cancel([](double fraction, const char*) { return fraction < 0.4; });
 	DirectionSmoothingOptions options;
-	options.alpha = 1.0;
+	options.alpha = 0.5;
 	EXPECT_THROW(smoothDirections(exact.cloud, exact.field, options, cancel), Cancelled);
 }
 

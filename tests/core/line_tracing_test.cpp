@@ -189,8 +189,11 @@ TEST(LineTracing, FollowsCirclesAndRulingsOfTheCylinder)
 TEST(LineTracing, ClosesTheCirclesOfTheTorus)
 {
 	const test::ExactCloud exact = test::exactCloud(request("torus", 3000));
-	const LineNetwork      lines = trace(exact);
-	double                 closed[2] = {0, 0}, all[2] = {0, 0};
+	LineTracingOptions     options;
+	options.stopFactor              = meshStopFactor;
+	options.gradation               = meshGradation;
+	const LineNetwork lines         = trace(exact, options);
+	double            closed[2]     = {0, 0}, all[2] = {0, 0};
 	const std::vector<double> length = lengths(lines);
 	for (Index l = 0; l < lines.lines(); ++l) {
 		all[lines.family[l] - 1] += length[l];
@@ -426,6 +429,64 @@ TEST(LineTracing, SurvivesSmallAndDegenerateClouds)
 	alone.field.weights.neighbors.indices.clear();
 	alone.field.weights.values.clear();
 	expectSane(trace(alone));
+}
+
+TEST(LineTracing, EndsOnTheRimAndNotBeyond)
+{
+	const test::ExactCloud exact = test::exactCloud(request("helicoid", 4000));
+	LineTracingOptions     options;
+	options.minSpacing = options.maxSpacing = 0.05;
+	options.stopFactor     = meshStopFactor;
+	const LineNetwork lines = trace(exact, options);
+	const double      h     = exact.minimum.medianSpacing;
+	Index             rims  = 0, others = 0;
+	for (const auto& both : lines.ends)
+		for (const LineEnd end : both)
+			++(end == LineEnd::Rim ? rims : others);
+	EXPECT_GT(rims, 5 * others);
+	// Lines reach the rim from all sides: the cloud's box is the surface's.
+	for (int axis = 0; axis < 3; ++axis) {
+		const auto line = lines.vertices.row(axis), cloud = exact.cloud.positions.row(axis);
+		EXPECT_LT(std::abs(line.maxCoeff() - cloud.maxCoeff()), h);
+		EXPECT_LT(std::abs(line.minCoeff() - cloud.minCoeff()), h);
+	}
+}
+
+TEST(LineTracing, EndsOnTheCreasesOfACube)
+{
+	const LineNetwork lines = trace(test::exactCloud(request("cube", 4000)));
+	Index             creases = 0, rims = 0;
+	for (const auto& both : lines.ends)
+		for (const LineEnd end : both) {
+			creases += end == LineEnd::Crease;
+			rims += end == LineEnd::Rim;
+		}
+	EXPECT_GT(creases, lines.lines());
+	EXPECT_LE(rims, creases / 50);
+}
+
+TEST(LineTracing, NoneEndsAtARimOfATorus)
+{
+	const LineNetwork lines = trace(test::exactCloud(request("torus", 4000)));
+	Index             edges = 0, all = 0;
+	for (Index l = 0; l < lines.lines(); ++l)
+		for (const LineEnd end : lines.ends[l]) {
+			EXPECT_EQ(end == LineEnd::None, bool(lines.closed[l]));
+			edges += end == LineEnd::Rim || end == LineEnd::Crease;
+			++all;
+		}
+	EXPECT_LE(edges, all / 50);
+}
+
+TEST(LineTracing, ArcLengthsStartAnewWithEveryLine)
+{
+	LineNetwork lines;
+	lines.vertices.resize(3, 5);
+	lines.vertices << 0, 3, 3, 7, 7, 0, 4, 4, 0, 0, 0, 0, 2, 0, 1;
+	lines.offsets = {0, 3, 5};
+	lines.family  = {1, 2};
+	const Eigen::VectorXd arc = arcLengths(lines);
+	EXPECT_EQ(arc, (Eigen::VectorXd(5) << 0.0, 5.0, 7.0, 0.0, 1.0).finished());
 }
 
 TEST(LineTracing, TouchingSheetsKeepTheirOwnLines)

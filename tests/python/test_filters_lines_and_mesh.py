@@ -187,6 +187,22 @@ def test_lines_carry_their_arc_length_and_whether_they_close(traced):
         np.testing.assert_allclose(np.diff(length[own]), steps, atol=1e-6)
 
 
+def test_lines_of_the_position_field(torus):
+    meshes, report = retrace(torus, method="Position Field", target_vertices=300)
+    positions = meshes.current_mesh().vertex_matrix()
+    assert rms(distances("torus", positions)) < 0.01
+    assert report["lines_family_1"] > 0 and report["lines_family_2"] > 0
+    assert abs(report["crossings"] - 300) < 60
+    truth, family = analytic_surfaces.project("torus", positions), attribute(meshes, "line_family")
+    ends = meshes.current_mesh().edge_matrix()
+    along = positions[ends[:, 1]] - positions[ends[:, 0]]
+    wanted = np.where(family[ends[:, :1]] == 1, truth["d1"][ends[:, 0]], truth["d2"][ends[:, 0]])
+    assert np.median(axis_angle(along / np.linalg.norm(along, axis=1)[:, None], wanted)) < 0.1
+    meshes.apply_filter(MESH, point_cloud=0)
+    mesh = meshes.current_mesh()
+    assert polygon_topology(mesh.polygonal_face_list(), mesh.vertex_number())[0] == 0
+
+
 def test_lines_survive_an_obj_file(traced, tmp_path):
     meshes, report = traced
     file = str(tmp_path / "lines.obj")
@@ -369,8 +385,8 @@ def test_pipeline_keeps_intermediate_layers(torus):
     meshes = layer_of(torus)
     meshes.apply_filter(PIPELINE, keep_intermediate_layers=True, **QUICK)
     labels = [mesh.label() for mesh in meshes]
-    assert labels[1:] == ["cleaned cloud", "curvature-aligned mesh"]
-    assert meshes.current_mesh_id() == 2
+    assert labels[1:] == ["cleaned cloud", "lines of curvature", "curvature-aligned mesh"]
+    assert meshes.current_mesh_id() == 3
     cleaned = meshes.mesh(1)
     truth = analytic_surfaces.project("torus", cleaned.vertex_matrix())
     k1 = cleaned.vertex_custom_scalar_attribute_array("curv_k1")

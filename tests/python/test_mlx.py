@@ -89,7 +89,7 @@ PARAMETERS = {
     OUTLIERS: {"mode": 0, "sensitivity": 3.5, "vote_threshold": 0.5, "rounds": 3, "delete_selected": False},
     DENOISE: {"method": 0, "noise": 0.0, "radius": 0.0, "iterations": 100, "energy": 0, "optimizer": 0, "neighbors": 0},
     SMOOTH: {"alpha": 0.5},
-    TRACE: {"epsilon": 1e-5, "target_vertices": 0, "min_spacing": 0.0, "max_spacing": 0.0, "tolerance": 0.01,
+    TRACE: {"method": 0, "stop_factor": 0.7, "epsilon": 1e-5, "target_vertices": 0, "min_spacing": 0.0, "max_spacing": 0.0, "tolerance": 0.01,
             "projection": 0, "umbilic_ratio": 0.95, "smooth_directions": True},
     MESH: {"triangulate": False, "split_concave": True, "close_holes": False},
     PIPELINE: {"method": 0, "target_vertices": 0, "anisotropy": 1.5, "triangulate": False, "close_holes": False, "reject_outliers": True,

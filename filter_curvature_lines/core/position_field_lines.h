@@ -1,0 +1,22 @@
+// The lines on which a phase of a position field is a whole number, as polylines: the same shape as traced ones.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "line_tracing.h"
+#include "scaffold.h"
+#include "surface_curves.h"
+
+namespace curvature_lines {
+
+// Vertices are the points of `curves` on the edges of the scaffold, projected onto the surface. The crosses
+// of the field do not tell the families apart, around a singular point they change places: a line is of the
+// family whose principal direction it follows for most of its length. Rims and creases, which the mesh has as
+// lines too, are not among them.
+LineNetwork linesOf(
+	const SurfaceCurves&  curves,
+	const Scaffold&       scaffold,
+	const CrossField&     field,
+	const PointCloud&     cloud,
+	const CurvatureField& curvature);
+
+} // namespace curvature_lines

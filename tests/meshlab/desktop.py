@@ -96,6 +96,13 @@ class Widget:
         return None
 
 
+def accessible_programs() -> int:
+    """How many there are; asked by another process, for the library remembers what it sees before it is ready."""
+    code = "import gi; gi.require_version('Atspi', '2.0'); from gi.repository import Atspi; "
+    code += "print(Atspi.get_desktop(0).get_child_count())"
+    return int(subprocess.run(["python3", "-c", code], check=True, capture_output=True, text=True).stdout)
+
+
 def xdotool(*arguments: object) -> str:
     command = ["xdotool", *map(str, arguments)]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
@@ -118,11 +125,13 @@ def wait_for(what: str, look: Callable[[], object], seconds: float = 20.0):
     """The first thing ``look`` finds."""
     end = time.monotonic() + seconds
     while True:
+        while GLib.MainContext.default().iteration(False):
+            pass  # the library learns of changes by messages
         try:
             if found := look():
                 return found
-        except GLib.Error:
-            pass  # the window is busy or has just gone
+        except (GLib.Error, subprocess.CalledProcessError):
+            pass  # not there yet, busy, or just gone
         if time.monotonic() > end:
             raise Failure(f"waited {seconds:.0f} s for {what}")
         time.sleep(0.1)
@@ -139,12 +148,14 @@ class Desktop:
         Path("/tmp/.X11-unix").mkdir(mode=0o1777, exist_ok=True)
         self.start("Xvfb", DISPLAY, "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-nolisten", "tcp")
         os.environ["DISPLAY"] = DISPLAY
-        wait_for("the X server", lambda: Path(f"/tmp/.X11-unix/X{DISPLAY[1:]}").exists())
+        wait_for("the X server", lambda: xdotool("getdisplaygeometry"))
         self.start("openbox")
+        os.environ["QT_LINUX_ACCESSIBILITY_ALWAYS_ON"] = "1"
         # Qt looks for the bus once, when it starts, and must find it then.
-        ask = "dbus-send --session --print-reply=literal --dest=org.a11y.Bus /org/a11y/bus org.a11y.Bus.GetAddress"
-        address = subprocess.run(ask.split(), check=True, capture_output=True, text=True).stdout.strip()
-        os.environ |= {"AT_SPI_BUS_ADDRESS": address, "QT_LINUX_ACCESSIBILITY_ALWAYS_ON": "1"}
+        ask = "dbus-send --session --print-reply --dest=org.a11y.Bus /org/a11y/bus org.a11y.Bus.GetAddress"
+        subprocess.run(ask.split(), check=True, stdout=subprocess.DEVNULL)
+        self.start("/usr/libexec/at-spi2-registryd")
+        time.sleep(1)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -158,10 +169,17 @@ class Desktop:
         self.processes.append(process)
         return process
 
+    def stop(self, process: subprocess.Popen) -> None:
+        self.processes.remove(process)
+        process.kill()
+        process.wait()
+
     def screenshot(self, name: str, box: Box | None = None) -> None:
         crop = ["-crop", f"{box.width}x{box.height}+{box.x}+{box.y}", "+repage"] if box else []
         file = self.pictures / f"{name}.png"
         subprocess.run(["import", "-silent", "-window", "root", *crop, "-colors", "256", str(file)], check=True)
 
     def applications(self) -> list[Widget]:
-        return list(Widget(Atspi.get_desktop(0)).children())
+        desktop = Atspi.get_desktop(0)
+        desktop.clear_cache()
+        return list(Widget(desktop).children())

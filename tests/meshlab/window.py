@@ -1,0 +1,181 @@
+# MeshLab's window as its user sees it: menus, the dialog of a filter, the log, the layers, files.
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""MeshLab, driven by mouse and keyboard."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from desktop import Atspi, Desktop, Failure, Widget, accessible_programs, click, keys, wait_for, write, xdotool
+
+
+class MeshLab:
+    """A running MeshLab with the files given opened in it."""
+
+    def __init__(self, desktop: Desktop, log: Path, *files: Path):
+        self.desktop = desktop
+        # Sometimes Qt does not get through to the accessibility bus, and does not try again.
+        for _ in range(6):
+            self.process = desktop.start("meshlab", *map(str, files), log=log)
+            wait_for("the files to be opened", lambda: "All files opened" in log.read_text(errors="replace"), 60)
+            time.sleep(1)
+            if accessible_programs():
+                break
+            print("MeshLab is not accessible, another try")
+            desktop.stop(self.process)
+        self.application = wait_for("MeshLab", self._application)
+        self.window = wait_for("its window", lambda: self._frame(r"MeshLab 20.*\[Project"))
+
+    def _application(self) -> Widget | None:
+        return next((app for app in self.desktop.applications() if app.name.startswith("MeshLab")), None)
+
+    def _frame(self, pattern: str) -> Widget | None:
+        return next((child for child in self.application.children() if re.match(pattern, child.name)), None)
+
+    # --- what it shows -----------------------------------------------------------------------------------------------
+
+    def log(self) -> str:
+        panes = [widget for widget in self.window.everything() if widget.role == "text" and widget.on_screen]
+        return next((pane.text for pane in panes if "opened in" in pane.text), "")
+
+    def alive(self) -> bool:
+        return self.process.poll() is None
+
+    def message(self) -> Widget | None:
+        """The message box in front, if there is one."""
+        for child in self.application.children():
+            if child.role in ("alert", "dialog") and child.on_screen:
+                return child
+        return None
+
+    def dismiss(self) -> str:
+        """Reads the message box and closes it."""
+        box = wait_for("a message", self.message)
+        text = "\n".join(widget.text for widget in box.everything() if widget.role == "label")
+        click(box.find("button", "OK").box.middle)
+        wait_for("the message to go", lambda: not self.message())
+        return text
+
+    def progress(self) -> int | None:
+        bar = self.window.find("progress bar")
+        return round(bar.value) if bar else None
+
+    def choose_layer(self, label: str) -> None:
+        def cell() -> Widget | None:
+            names = (label, label + " *")  # changed, not saved
+            return next((w for n in names if (w := self.window.find("table cell", n))), None)
+
+        click(wait_for(f"layer '{label}'", cell).box.middle)
+
+    # --- menus -------------------------------------------------------------------------------------------------------
+
+    def menu(self, *path: str) -> None:
+        """Opens the menus one after another and chooses the last entry; by keyboard, as many entries move the mouse's way."""
+        bar = self.window.find("menu bar", skip=())
+        entry = next(child for child in bar.children() if child.name == path[0])
+        click(entry.box.middle)
+        for name in path[1:]:
+            time.sleep(0.2)
+            # The arrow keys pass over lines between entries, and over grey ones.
+            items = [item for popup in entry.children() for item in popup.children()]
+            entries = [item for item in items if item.role != "separator" and item.has(Atspi.StateType.ENABLED)]
+            names = [item.name for item in entries]
+            if name not in names:
+                raise Failure(f"menu '{entry.name}' holds no '{name}'")
+            # In the bar's menu nothing is chosen yet; a submenu opens with its first entry chosen.
+            steps = names.index(name) + (entry.name == path[0])
+            keys(*["Down"] * steps)
+            entry = entries[names.index(name)]
+            keys("Return" if name == path[-1] else "Right")
+
+    # --- filters -----------------------------------------------------------------------------------------------------
+
+    def filter(self, menu: str, name: str) -> Dialog:
+        """Opens the filter's dialog from its menu."""
+        self.menu("Filters", menu, name)
+        return Dialog(self, name)
+
+    def wait_for_filter(self, name: str, before: int, seconds: float, watch: Callable[[int | None], None]) -> str | None:
+        """Until the log tells that the filter was applied (None), or a message says why not (its text)."""
+
+        def ended() -> str | None:
+            watch(self.progress())
+            if not self.alive():
+                raise Failure(f"MeshLab died of '{name}'")
+            if self.message():
+                return "message"
+            return "applied" if self.log().count("Applied filter") > before else None
+
+        return self.dismiss() if wait_for(f"'{name}' to end", ended, seconds) == "message" else None
+
+    # --- files -------------------------------------------------------------------------------------------------------
+
+    def name_file(self, file: Path) -> None:
+        """Types the file's name into the file dialog in front."""
+        wait_for("a file dialog", lambda: self.application_dialog())
+        time.sleep(0.5)
+        keys("ctrl+a")
+        write(str(file))
+        keys("Return")
+
+    def application_dialog(self) -> Widget | None:
+        return next((c for c in self.application.children() if c.role in ("dialog", "file chooser") and c.on_screen), None)
+
+
+class Dialog:
+    """The dialog of a filter."""
+
+    def __init__(self, meshlab: MeshLab, name: str):
+        self.meshlab = meshlab
+        self.name = name
+        self.frame = wait_for(f"the dialog of '{name}'", lambda: meshlab.application.find("frame", name))
+        time.sleep(0.3)
+
+    def labels(self) -> list[Widget]:
+        return [widget for widget in self.frame.everything() if widget.role == "label" and widget.on_screen]
+
+    def field(self, label: str) -> Widget:
+        """What stands to the right of the label."""
+        row = next((widget.box for widget in self.labels() if widget.name == label), None)
+        if row is None:
+            raise Failure(f"'{self.name}' shows no '{label}'")
+        for widget in self.frame.everything():
+            if widget.role in ("text", "combo box", "check box", "spin button") and widget.on_screen:
+                box = widget.box
+                if abs(box.y - row.y) < 5 and box.x >= row.x + row.width:
+                    return widget
+        raise Failure(f"'{self.name}' has nothing to fill in beside '{label}'")
+
+    def set(self, label: str, value: object) -> None:
+        field = self.field(label)
+        if field.role == "check box":
+            if field.has(Atspi.StateType.CHECKED) != value:
+                click(field.box.middle)
+        elif field.role == "combo box":
+            click(field.box.middle)
+            time.sleep(0.2)
+            write(str(value))  # the list goes to the entry that begins so
+            keys("Return")
+        else:
+            click(field.box.middle)
+            keys("ctrl+a")
+            write(str(value))
+            keys("Tab")
+
+    def screenshot(self, name: str) -> None:
+        xdotool("mousemove", 5, 500)
+        time.sleep(0.3)
+        self.meshlab.desktop.screenshot(name, self.frame.box)
+
+    def apply(self, seconds: float = 120.0, watch: Callable[[int | None], None] = lambda _: None) -> str | None:
+        """Runs the filter; the text of the message it ended with, if any."""
+        before = self.meshlab.log().count("Applied filter")
+        click(self.frame.find("button", "Apply").box.middle)
+        return self.meshlab.wait_for_filter(self.name, before, seconds, watch)
+
+    def close(self) -> None:
+        click(self.frame.find("button", "Close").box.middle)
+        wait_for("the dialog to close", lambda: not self.meshlab.application.find("frame", self.name))

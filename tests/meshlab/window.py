@@ -18,7 +18,7 @@ class MeshLab:
     def __init__(self, desktop: Desktop, log: Path, *files: Path):
         self.desktop = desktop
         # Sometimes Qt does not get through to the accessibility bus, and does not try again.
-        for _ in range(6):
+        for _ in range(15):
             self.process = desktop.start("meshlab", *map(str, files), log=log)
             wait_for("the files to be opened", lambda: "All files opened" in log.read_text(errors="replace"), 60)
             time.sleep(1)
@@ -33,7 +33,8 @@ class MeshLab:
         return next((app for app in self.desktop.applications() if app.name.startswith("MeshLab")), None)
 
     def _frame(self, pattern: str) -> Widget | None:
-        return next((child for child in self.application.children() if re.match(pattern, child.name)), None)
+        frames = [child for child in self.application.children() if re.match(pattern, child.name)]
+        return next((frame for frame in frames if frame.on_screen), None)
 
     # --- what it shows -----------------------------------------------------------------------------------------------
 
@@ -46,10 +47,7 @@ class MeshLab:
 
     def message(self) -> Widget | None:
         """The message box in front, if there is one."""
-        for child in self.application.children():
-            if child.role in ("alert", "dialog") and child.on_screen:
-                return child
-        return None
+        return next((child for child in self.application.children() if child.role == "alert" and child.on_screen), None)
 
     def dismiss(self) -> str:
         """Reads the message box and closes it."""
@@ -98,31 +96,90 @@ class MeshLab:
         self.menu("Filters", menu, name)
         return Dialog(self, name)
 
-    def wait_for_filter(self, name: str, before: int, seconds: float, watch: Callable[[int | None], None]) -> str | None:
-        """Until the log tells that the filter was applied (None), or a message says why not (its text)."""
+    def wait_for_filters(
+        self,
+        what: str,
+        applied: int,
+        seconds: float,
+        watch: Callable[[int | None], None] = lambda _: None,
+        picture: str | None = None,
+    ) -> str | None:
+        """Until the log tells of so many applied filters (None), or a message says why not (its text)."""
 
         def ended() -> str | None:
             watch(self.progress())
             if not self.alive():
-                raise Failure(f"MeshLab died of '{name}'")
+                raise Failure(f"MeshLab died of '{what}'")
             if self.message():
                 return "message"
-            return "applied" if self.log().count("Applied filter") > before else None
+            return "applied" if self.log().count("Applied filter") >= applied else None
 
-        return self.dismiss() if wait_for(f"'{name}' to end", ended, seconds) == "message" else None
+        if wait_for(f"'{what}' to end", ended, seconds) != "message":
+            return None
+        if picture:
+            self.desktop.screenshot(picture)
+        return self.dismiss()
 
     # --- files -------------------------------------------------------------------------------------------------------
 
-    def name_file(self, file: Path) -> None:
+    def dialog(self, title: str) -> Widget:
+        """The dialog whose title begins so."""
+        dialog = wait_for(f"'{title}'", lambda: self._frame(title))
+        time.sleep(0.5)  # until it has the keyboard
+        return dialog
+
+    def name_file(self, title: str, file: Path) -> None:
         """Types the file's name into the file dialog in front."""
-        wait_for("a file dialog", lambda: self.application_dialog())
-        time.sleep(0.5)
+        self.dialog(title)
         keys("ctrl+a")
         write(str(file))
         keys("Return")
+        wait_for("the file dialog to close", lambda: not self._frame(title))
 
-    def application_dialog(self) -> Widget | None:
-        return next((c for c in self.application.children() if c.role in ("dialog", "file chooser") and c.on_screen), None)
+    def export(self, file: Path, *attributes: str) -> None:
+        """Saves the current layer with what MeshLab suggests for this kind of file, and the custom attributes named."""
+        self.menu("File", "Export Mesh As...")
+        self.name_file("Save", file)
+        form = self.dialog("Choose Saving Options")
+        for attribute in attributes:
+            click(beside(form, f"V(f): {attribute}").box.middle)
+        click(form.find("button", "OK").box.middle)
+        wait_for(f"{file.name} to be saved", lambda: file.exists() and not self._frame("Choose Saving Options"))
+
+    def apply_script(self, file: Path, filters: int, seconds: float = 120.0) -> str | None:
+        """Loads a filter script and runs it; the text of the message it ended with, if any."""
+        before = self.log().count("Applied filter")
+        self.menu("Filters", "Show current filter script")
+        form = self.dialog("Dialog$")  # MeshLab gives it no better title
+        click(form.find("button", "Open Script").box.middle)
+        self.name_file("Open Filter Script", file)
+        self.desktop.screenshot("script")
+        click(form.find("button", "Apply Script").box.middle)
+        return self.wait_for_filters(file.name, before + filters, seconds)
+
+    def load_plugin(self, file: Path) -> None:
+        """Help, Plugin Info, Load Plugins."""
+        self.menu("Help", "Plugin Info")
+        form = self.dialog("Plugin Information")
+        click(form.find("button", "Load Plugins").box.middle)
+        self.name_file("Load Plugins", file)
+        wait_for("the plugin in the list", lambda: [w for w in form.everything() if w.name == file.name])
+        self.desktop.screenshot("plugin_info")
+        click(form.find("button", "OK").box.middle)
+
+
+def beside(form: Widget, label: str) -> Widget:
+    """What stands to the right of the label."""
+    shown = [widget for widget in form.everything() if widget.on_screen]
+    row = next((widget.box for widget in shown if widget.role == "label" and widget.name == label), None)
+    if row is None:
+        raise Failure(f"'{form.name}' shows no '{label}'")
+    for widget in shown:
+        box = widget.box
+        fillable = widget.role in ("text", "combo box", "check box", "spin button")
+        if fillable and abs(box.middle[1] - row.middle[1]) < 8 and box.x >= row.x + row.width:
+            return widget
+    raise Failure(f"'{form.name}' has nothing to fill in beside '{label}'")
 
 
 class Dialog:
@@ -134,20 +191,8 @@ class Dialog:
         self.frame = wait_for(f"the dialog of '{name}'", lambda: meshlab.application.find("frame", name))
         time.sleep(0.3)
 
-    def labels(self) -> list[Widget]:
-        return [widget for widget in self.frame.everything() if widget.role == "label" and widget.on_screen]
-
     def field(self, label: str) -> Widget:
-        """What stands to the right of the label."""
-        row = next((widget.box for widget in self.labels() if widget.name == label), None)
-        if row is None:
-            raise Failure(f"'{self.name}' shows no '{label}'")
-        for widget in self.frame.everything():
-            if widget.role in ("text", "combo box", "check box", "spin button") and widget.on_screen:
-                box = widget.box
-                if abs(box.y - row.y) < 5 and box.x >= row.x + row.width:
-                    return widget
-        raise Failure(f"'{self.name}' has nothing to fill in beside '{label}'")
+        return beside(self.frame, label)
 
     def set(self, label: str, value: object) -> None:
         field = self.field(label)
@@ -170,11 +215,16 @@ class Dialog:
         time.sleep(0.3)
         self.meshlab.desktop.screenshot(name, self.frame.box)
 
-    def apply(self, seconds: float = 120.0, watch: Callable[[int | None], None] = lambda _: None) -> str | None:
-        """Runs the filter; the text of the message it ended with, if any."""
+    def apply(
+        self,
+        seconds: float = 120.0,
+        watch: Callable[[int | None], None] = lambda _: None,
+        picture: str | None = None,
+    ) -> str | None:
+        """Runs the filter; the text of the message it ended with, if any, which ``picture`` is taken of."""
         before = self.meshlab.log().count("Applied filter")
         click(self.frame.find("button", "Apply").box.middle)
-        return self.meshlab.wait_for_filter(self.name, before, seconds, watch)
+        return self.meshlab.wait_for_filters(self.name, before + 1, seconds, watch, picture)
 
     def close(self) -> None:
         click(self.frame.find("button", "Close").box.middle)

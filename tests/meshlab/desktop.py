@@ -103,9 +103,9 @@ def accessible_programs() -> int:
     return int(subprocess.run(["python3", "-c", code], check=True, capture_output=True, text=True).stdout)
 
 
-def xdotool(*arguments: object) -> str:
+def xdotool(*arguments: object, check: bool = True) -> str:
     command = ["xdotool", *map(str, arguments)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return subprocess.run(command, check=check, capture_output=True, text=True).stdout
 
 
 def click(place: tuple[int, int]) -> None:
@@ -178,6 +178,12 @@ class Desktop:
         crop = ["-crop", f"{box.width}x{box.height}+{box.x}+{box.y}", "+repage"] if box else []
         file = self.pictures / f"{name}.png"
         subprocess.run(["import", "-silent", "-window", "root", *crop, "-colors", "256", str(file)], check=True)
+
+    def pixels(self, x: int, y: int, width: int, height: int) -> list[tuple[int, int, int]]:
+        """Red, green and blue, row by row."""
+        crop = ["-crop", f"{width}x{height}+{x}+{y}", "-depth", "8", "rgb:-"]
+        data = subprocess.run(["import", "-silent", "-window", "root", *crop], check=True, capture_output=True).stdout
+        return list(zip(data[::3], data[1::3], data[2::3]))
 
     def applications(self) -> list[Widget]:
         desktop = Atspi.get_desktop(0)

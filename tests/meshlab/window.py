@@ -17,6 +17,7 @@ class MeshLab:
 
     def __init__(self, desktop: Desktop, log: Path, *files: Path):
         self.desktop = desktop
+        self.printed = log
         # Sometimes Qt does not get through to the accessibility bus, and does not try again.
         for _ in range(15):
             self.process = desktop.start("meshlab", *map(str, files), log=log)
@@ -28,6 +29,7 @@ class MeshLab:
             desktop.stop(self.process)
         self.application = wait_for("MeshLab", self._application)
         self.window = wait_for("its window", lambda: self._frame(r"MeshLab 20.*\[Project"))
+        self.bar = self.window.find("progress bar").box
 
     def _application(self) -> Widget | None:
         return next((app for app in self.desktop.applications() if app.name.startswith("MeshLab")), None)
@@ -41,6 +43,10 @@ class MeshLab:
     def log(self) -> str:
         panes = [widget for widget in self.window.everything() if widget.role == "text" and widget.on_screen]
         return next((pane.text for pane in panes if "opened in" in pane.text), "")
+
+    def applied(self) -> int:
+        """How many filters it has applied."""
+        return self.printed.read_text(errors="replace").count("Applied filter")
 
     def alive(self) -> bool:
         return self.process.poll() is None
@@ -57,9 +63,11 @@ class MeshLab:
         wait_for("the message to go", lambda: not self.message())
         return text
 
-    def progress(self) -> int | None:
-        bar = self.window.find("progress bar")
-        return round(bar.value) if bar else None
+    def progress(self) -> int:
+        """How much of the progress bar is filled, in per cent."""
+        x, y, width, height = self.bar
+        row = self.desktop.pixels(x, y + height - 6, width, 1)
+        return 100 * sum(blue > red + 40 for red, _, blue in row) // width
 
     def choose_layer(self, label: str) -> None:
         def cell() -> Widget | None:
@@ -101,18 +109,19 @@ class MeshLab:
         what: str,
         applied: int,
         seconds: float,
-        watch: Callable[[int | None], None] = lambda _: None,
+        watch: Callable[[int], None] = lambda _: None,
         picture: str | None = None,
     ) -> str | None:
         """Until the log tells of so many applied filters (None), or a message says why not (its text)."""
 
         def ended() -> str | None:
+            # Only by what costs a busy window nothing: its printed log, its windows, its picture.
             watch(self.progress())
             if not self.alive():
                 raise Failure(f"MeshLab died of '{what}'")
-            if self.message():
+            if xdotool("search", "--all", "--name", "Filter Failure|MeshLab Filtering Error", check=False):
                 return "message"
-            return "applied" if self.log().count("Applied filter") >= applied else None
+            return "applied" if self.applied() >= applied else None
 
         if wait_for(f"'{what}' to end", ended, seconds) != "message":
             return None
@@ -148,7 +157,7 @@ class MeshLab:
 
     def apply_script(self, file: Path, filters: int, seconds: float = 120.0) -> str | None:
         """Loads a filter script and runs it; the text of the message it ended with, if any."""
-        before = self.log().count("Applied filter")
+        before = self.applied()
         self.menu("Filters", "Show current filter script")
         form = self.dialog("Dialog$")  # MeshLab gives it no better title
         click(form.find("button", "Open Script").box.middle)
@@ -218,11 +227,11 @@ class Dialog:
     def apply(
         self,
         seconds: float = 120.0,
-        watch: Callable[[int | None], None] = lambda _: None,
+        watch: Callable[[int], None] = lambda _: None,
         picture: str | None = None,
     ) -> str | None:
         """Runs the filter; the text of the message it ended with, if any, which ``picture`` is taken of."""
-        before = self.meshlab.log().count("Applied filter")
+        before = self.meshlab.applied()
         click(self.frame.find("button", "Apply").box.middle)
         return self.meshlab.wait_for_filters(self.name, before + 1, seconds, watch, picture)
 

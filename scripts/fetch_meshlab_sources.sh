@@ -21,11 +21,9 @@ trap 'rm -rf "$work"' EXIT
 chmod 755 "$work"
 
 from_distribution() {
-	command -v apt-get >/dev/null && [ -x /usr/lib/apt/apt-helper ] || return 1
 	local site keyring=/usr/share/keyrings/debian-archive-keyring.gpg
-	site=$(apt-get indextargets --format '$(SITE)|$(COMPONENT)|$(ORIGIN)|$(CODENAME)' 'Created-By: Packages' |
-		awk -F'|' '$2 == "main" && $3 == "Debian" && $4 !~ /security/ { print $1; exit }')
-	[ -n "$site" ] && [ -f "$keyring" ] || return 1
+	[ -x /usr/lib/apt/apt-helper ] && [ -f "$keyring" ] || return 1
+	site=$("$(dirname "${BASH_SOURCE[0]}")/debian_mirror.sh") || return 1
 
 	# A package index of our own, so that neither the machine's lists nor its sources change.
 	mkdir -p "$work/lists/partial" "$work/cache/archives/partial"

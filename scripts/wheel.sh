@@ -36,7 +36,6 @@ assert "build/wheel/user" in str(package.plugin_path()), package.plugin_path()
 with open("/proc/self/maps") as maps:
     loaded = {line.split()[-1] for line in maps if ".so" in line}
 assert not [name for name in loaded if "libQt5Core" in name and "/user/" not in name], loaded
-for library in ("gmp", "mpfr", "gomp"):
-    assert any(f"pymeshlab_curvature_lines.libs/lib{library}-" in name for name in loaded), library
+assert any("pymeshlab_curvature_lines.libs/libgomp-" in name for name in loaded), loaded
 print(f"wheel {package.__version__} works:", found.current_mesh().face_number(), "triangles of quads.obj")
 PYTHON

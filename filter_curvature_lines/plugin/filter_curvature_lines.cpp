@@ -103,7 +103,8 @@ std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
 	vcg::CallBackPos* callback)
 {
 	const FilterSpec& spec = specOf(ID(action));
-	const auto failure = [&](const QString& why) { return MLException(spec.name + ": " + why); };
+	// Both hosts put the filter's name before it.
+	const auto failure = [](const QString& why) { return MLException(why.left(1).toUpper() + why.mid(1)); };
 	try {
 		const RichParameterList list = withDefaults(given, spec.parameters(document));
 		FilterResults           results =
@@ -117,16 +118,16 @@ std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
 		throw failure(error.what());
 	}
 	catch (const Cancelled&) {
-		throw failure("cancelled; nothing was changed.");
+		throw failure("Cancelled; nothing was changed.");
 	}
 	catch (const std::bad_alloc&) {
-		throw failure("not enough memory; try a smaller or simplified point cloud.");
+		throw failure("Not enough memory; try a smaller or simplified point cloud.");
 	}
 	catch (const std::exception& error) {
 		throw failure(error.what());
 	}
 	catch (...) {
-		throw failure("failed for an unknown reason; nothing was changed.");
+		throw failure("Failed for an unknown reason; nothing was changed.");
 	}
 }
 

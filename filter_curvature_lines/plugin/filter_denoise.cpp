@@ -30,36 +30,37 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichFloat(
 		"noise",
 		Scalarm(defaults.robust.noise),
-		"Noise",
+		"Noise (length; 0: automatic)",
 		"Robust: standard deviation of the points from the surface, a length in the layer's units "
 		"(0 = automatic, at most half the bounding-box diagonal)."));
 	list.addParam(RichFloat(
 		"radius",
 		Scalarm(defaults.robust.radius),
-		"Radius",
+		"Radius (spacings; 0: automatic)",
 		"Robust: size of the fitted pieces of surface, in local point spacings (0 = automatic, at "
-		"least 2.5 and at most 100). Larger ones remove more noise and more detail.",
-		true));
+		"least 2.5 and at most 100). Larger ones remove more noise and more detail."));
 	list.addParam(RichInt(
 		"iterations",
 		defaults.paper.iterations,
-		"Iterations",
-		"Paper: largest number of iterations of the optimiser (1 to 10000)."));
+		"Iterations (Paper)",
+		"Paper: largest number of iterations of the optimiser (1 to 10000).",
+		true));
 	list.addParam(RichEnum(
 		"energy",
 		static_cast<int>(defaults.paper.energy),
 		QStringList() << "Square Root"
 					  << "Squared",
-		"Energy",
+		"Energy (Paper)",
 		"Paper: power of the disagreement between triangle and normal.<ul>"
 		"<li><b>Square Root</b>: as published in 2009, respects edges</li>"
-		"<li><b>Squared</b>: smoother, removes more noise on smooth surfaces</li></ul>"));
+		"<li><b>Squared</b>: smoother, removes more noise on smooth surfaces</li></ul>",
+		true));
 	list.addParam(RichEnum(
 		"optimizer",
 		static_cast<int>(defaults.paper.optimizer),
 		QStringList() << "L-BFGS-B"
 					  << "Polak-Ribiere",
-		"Optimiser",
+		"Optimiser (Paper)",
 		"Paper: L-BFGS-B (2009), or Polak-Ribiere conjugate gradients (2007).",
 		true));
 	list.addParam(RichEnum(
@@ -67,7 +68,7 @@ RichParameterList parameters(const MeshDocument&)
 		static_cast<int>(defaults.paper.neighbors),
 		QStringList() << "Six Sectors"
 					  << "Nearest",
-		"Neighbours",
+		"Neighbours (Paper)",
 		"Paper: the six neighbours of each point: the closest in each sixth of the tangent plane, or the "
 		"six nearest.",
 		true));

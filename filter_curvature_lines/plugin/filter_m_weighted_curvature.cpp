@@ -17,19 +17,19 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichFloat(
 		"bandwidth",
 		Scalarm(defaults.bandwidth),
-		"Bandwidth",
+		"Bandwidth (spacings)",
 		"Length h of the weights, in local point spacings (0.5 to 20). The weight is largest at h "
 		"times the root of the exponent. Larger resists more noise and blurs more detail."));
 	list.addParam(RichInt(
 		"exponent",
 		defaults.exponent,
-		"Exponent",
+		"Exponent (M weights)",
 		"With M weights, the power xi of x^(2 xi) exp(-x^2 / h^2) (1 to 10): the larger, the less "
 		"the closest points count."));
 	list.addParam(RichInt(
 		"neighbors",
 		defaults.neighbors,
-		"Neighbours",
+		"Neighbours (number)",
 		"Nearest points looked at around each point (6 to 1000)."));
 	list.addParam(RichEnum(
 		"weighting",

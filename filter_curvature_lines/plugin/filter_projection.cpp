@@ -21,19 +21,19 @@ RichParameterList parameters(const MeshDocument& document)
 		"control_mesh",
 		current,
 		&document,
-		"Control points",
+		"Cloud that is the surface",
 		"The cloud that defines the surface; it needs oriented normals and stays as it is, unless it is "
 		"projected onto its own surface."));
 	list.addParam(RichMesh(
 		"proxy_mesh",
 		current,
 		&document,
-		"Projected points",
+		"Layer to project",
 		"The layer whose vertices move onto the surface."));
 	list.addParam(RichFloat(
 		"bandwidth",
 		Scalarm(defaults.bandwidth),
-		"Bandwidth",
+		"Bandwidth (spacings)",
 		"Of the Gaussian weights, in local spacings of the control points (0.5 to 20). Larger removes "
 		"more noise and blurs more detail."));
 	list.addParam(RichInt(
@@ -58,7 +58,7 @@ RichParameterList parameters(const MeshDocument& document)
 	list.addParam(RichInt(
 		"resample",
 		1,
-		"Points per point",
+		"Points per vertex (1: move)",
 		"1: the vertices move. More (up to 100): so many points around each vertex, projected, as a new "
 		"layer: a denser cloud on the same surface."));
 	return list;

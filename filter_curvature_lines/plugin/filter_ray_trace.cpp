@@ -32,8 +32,8 @@ RichParameterList parameters(const MeshDocument& document)
 	RichParameterList    list;
 	list.addParam(RichFileSave(
 		"image_file", "", "*.png", "Image file", "Where the picture goes: a PNG file, replaced if it exists."));
-	list.addParam(RichInt("width", defaults.image.width, "Width", "In pixels (1 to 8192)."));
-	list.addParam(RichInt("height", defaults.image.height, "Height", "In pixels (1 to 8192)."));
+	list.addParam(RichInt("width", defaults.image.width, "Width (pixels)", "1 to 8192."));
+	list.addParam(RichInt("height", defaults.image.height, "Height (pixels)", "1 to 8192."));
 	list.addParam(RichEnum(
 		"surface",
 		0,
@@ -59,7 +59,7 @@ RichParameterList parameters(const MeshDocument& document)
 		"lines",
 		current,
 		&document,
-		"Lines",
+		"Lines (own layer: none)",
 		"A layer of lines (of curvature, or any edges) to draw on the surface in its vertices' colours; the "
 		"cloud's own layer: none."));
 	list.addParam(RichEnum(
@@ -77,7 +77,7 @@ RichParameterList parameters(const MeshDocument& document)
 	list.addParam(RichFloat(
 		"field_of_view",
 		Scalarm(Camera().fieldOfView),
-		"Field of view",
+		"Field of view (degrees)",
 		"Across the shorter side of the picture, in degrees (1 to 150).",
 		true));
 	return list;

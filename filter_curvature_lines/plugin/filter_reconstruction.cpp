@@ -34,20 +34,20 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichInt(
 		"target_vertices",
 		0,
-		"Target number of vertices",
+		"Target number of vertices (0: automatic)",
 		"About how many vertices the mesh gets (at most 10000000); 0 = automatic: from Chord error "
 		"if that is set, else from the size of the cloud."));
 	list.addParam(RichFloat(
 		"epsilon",
 		0,
-		"Chord error",
+		"Chord error (of diagonal; 0: automatic)",
 		"Sets the density of the lines if no target number is given: how far the chord between two "
 		"lines leaves the surface, as a fraction of the bounding-box diagonal (0 = automatic, at "
 		"most 0.5)."));
 	list.addParam(RichFloat(
 		"anisotropy",
 		static_cast<Scalarm>(defaults.anisotropy),
-		"Anisotropy",
+		"Anisotropy (1: square faces)",
 		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; 1 = "
 		"not at all)."));
 	addMeshParameters(list);

@@ -69,21 +69,16 @@ FilterSpec robustCurvatureFilter()
 		"Principal curvatures and directions of a point cloud, insensitive to noise, outliers and "
 		"wrong normals. An M-estimator (Geman-McClure) gives what disagrees less weight, down to "
 		"none, so that outliers and points across a sharp edge do not count."
-		"<br><br>By default the surface is fitted to the positions in regions whose size is found "
-		"from the cloud; the normals given tell its side and no more. With Scale <i>Paper</i>, the "
-		"variations of the normals between all pairs of points within three spacings are fitted by "
-		"a curvature tensor, as published." +
+		"<br><br>By default (Scale <i>Adaptive</i>) surfaces are fitted to the positions, in regions whose "
+		"size is found from the cloud; the normals only tell the side. With Scale <i>Paper</i> a tensor is "
+		"fitted to the normals within three spacings, as published." +
 			helpInput +
-			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); "
-			"vertex "
-			"quality and colour; and the vertex attributes <tt>curv_k1</tt>, <tt>curv_k2</tt>, "
-			"<tt>curv_confidence</tt>, <tt>curv_error</tt> (standard error of k1 - k2), "
-			"<tt>curv_scale</tt> (radius used), <tt>curv_feature</tt> (strength of the sharp edge or "
-			"corner nearby, 0 to 1; always 0 with Scale Paper) and <tt>curv_status</tt> (0 ok, 1 "
-			"boundary, 2 too few neighbours, 3 umbilic, 4 isolated, 5 invalid). Points without an "
-			"estimate get curvature 0. PD1 and PD2 are tangent to the fitted surface: to the layer's "
-			"normals where these agree with it within a degree, with Scale Paper always, and with "
-			"<i>Correct normals</i> to the normals it writes." +
+			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>; tangent to "
+			"the fitted surface); vertex quality and colour; and the vertex attributes <tt>curv_k1</tt>, "
+			"<tt>curv_k2</tt>, <tt>curv_confidence</tt>, <tt>curv_error</tt> (standard error of k1 - k2), "
+			"<tt>curv_scale</tt> (radius used), <tt>curv_feature</tt> (sharp edge nearby, 0 to 1) and "
+			"<tt>curv_status</tt> (0 ok, 1 boundary, 2 too few neighbours, 3 umbilic, 4 isolated, 5 "
+			"invalid). Points without an estimate get curvature 0." +
 			helpConventions + helpReference,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::VertexColoring,
 		FilterPlugin::SINGLE_MESH,

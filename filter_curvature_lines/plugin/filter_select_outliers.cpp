@@ -26,14 +26,14 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichFloat(
 		"sensitivity",
 		Scalarm(defaults.sensitivity),
-		"Sensitivity",
+		"Sensitivity (noise units)",
 		"Robust mode: heights above this many noise units are votes against the point (0.5 to "
 		"100). "
 		"Smaller values reject more."));
 	list.addParam(RichFloat(
 		"vote_threshold",
 		Scalarm(defaults.voteThreshold),
-		"Vote threshold",
+		"Vote threshold (0 to 1)",
 		"A point is an outlier when more than this share of the votes is against it (0 to 1)."));
 	list.addParam(RichInt(
 		"rounds",

@@ -19,14 +19,14 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichFloat(
 		"min_angle",
 		Scalarm(defaults.minAngle),
-		"Smallest angle",
+		"Smallest angle (degrees)",
 		"A line is kept if somewhere the normals of its two faces differ by this many degrees (5 to "
 		"150); from there it is followed until six tenths of it are left. Lower values find softer "
 		"edges, and more that noise makes up."));
 	list.addParam(RichFloat(
 		"spacing",
 		Scalarm(defaults.spacing),
-		"Vertex spacing",
+		"Vertex spacing (length; 0: automatic)",
 		"Distance between the vertices of the lines, in the layer's units; 0 = automatic, 0.7 times "
 		"the point spacing."));
 	list.addParam(RichBool(
@@ -111,29 +111,17 @@ FilterSpec sharpFeaturesFilter()
 	return {
 		"Extract Sharp Feature Lines",
 		"generate_sharp_feature_lines",
-		"Finds the sharp edges of the surface a point cloud samples, without a mesh: lines where two "
-		"faces meet at an angle, and the corners where lines end together. The faces on both sides "
-		"are "
-		"continued to where they intersect, so that lines are more exact than the points beside "
-		"them. "
-		"The rim of an open surface is no such line, nor is a tight but smooth bend of several "
-		"point "
-		"spacings." +
+		"Finds the sharp edges of a point cloud, without a mesh: lines where two faces meet at an angle, and "
+		"the corners where they end together. Both faces are continued to where they intersect, so the "
+		"lines are more exact than the points beside them. Rims, and smooth bends of several point "
+		"spacings, are no such lines." +
 			helpInput +
-			"<br><br><b>Writes</b> a new layer <i>sharp features</i> of vertices and edges, and makes "
-			"it "
-			"current, unless there is no sharp edge: normals (the mean of the two faces'), quality "
-			"(the "
-			"angle between the two faces' normals in degrees, positive where convex, negative where "
-			"concave), colour (orange convex, blue concave) and the vertex attribute "
-			"<tt>line_id</tt>; "
-			"lines that end in the same corner have a vertex there each. The cloud itself stays as "
-			"it "
-			"is. Save it as OBJ: PLY drops edges."
-			"<br><br><b>Returns</b> the numbers of <tt>curves</tt>, <tt>closed_curves</tt>, "
-			"<tt>concave_curves</tt> and <tt>corners</tt>, and the <tt>length</tt> of all lines."
-			"<br><br>Outliers should be removed before (<i>Select Outliers by Robust Curvature</i>)." +
-			helpConventions + helpReference,
+			" Remove outliers before (<i>Select Outliers by Robust Curvature</i>)."
+			"<br><br><b>Writes</b> a new layer <i>sharp features</i> of vertices and edges, unless there "
+			"is no sharp edge: normals (the mean of the two faces'), quality (the angle between the faces' "
+			"normals in degrees, positive where convex), colour (orange convex, blue concave), attribute "
+			"<tt>line_id</tt>. Save it as OBJ: PLY drops edges." +
+			helpReference,
 		FilterPlugin::PointSet + FilterPlugin::MeshCreation,
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,

@@ -16,7 +16,7 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichFloat(
 		"alpha",
 		Scalarm(defaults.alpha),
-		"Smoothness",
+		"Smoothness (0 to 1)",
 		"0 keeps the directions, 1 gives the smoothest field."));
 	list.addParam(RichInt(
 		"iterations",

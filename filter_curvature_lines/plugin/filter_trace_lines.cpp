@@ -30,31 +30,31 @@ RichParameterList parameters(const MeshDocument&)
 	list.addParam(RichFloat(
 		"epsilon",
 		Scalarm(defaults.epsilon),
-		"Chord error",
+		"Chord error (of diagonal)",
 		"Sets the density of the lines: neighbouring lines are as far apart as a chord that leaves "
 		"the surface by this fraction of the bounding-box diagonal (1e-9 to 0.5)."));
 	list.addParam(RichInt(
 		"target_vertices",
 		0,
-		"Target number of crossings",
+		"Target number of crossings (0: none)",
 		"If not 0, the chord error is found so that the lines cross in about so many points: the "
 		"vertices of the mesh to come (at most 10000000)."));
 	list.addParam(RichFloat(
 		"min_spacing",
 		0,
-		"Minimum spacing",
+		"Minimum spacing (length; 0: automatic)",
 		"Lines of one family are never closer than this, in the layer's units; 0 = automatic, from "
 		"the point spacing."));
 	list.addParam(RichFloat(
 		"max_spacing",
 		0,
-		"Maximum spacing",
+		"Maximum spacing (length; 0: automatic)",
 		"The distance between lines where the surface is flat, in the layer's units; 0 = "
 		"automatic."));
 	list.addParam(RichFloat(
 		"tolerance",
 		Scalarm(defaults.tolerance),
-		"Step tolerance",
+		"Step tolerance (relative)",
 		"Relative error per step; smaller values trace in smaller steps (1e-6 to 1).",
 		true));
 	list.addParam(RichEnum(

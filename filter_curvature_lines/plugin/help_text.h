@@ -7,20 +7,17 @@
 
 namespace curvature_lines {
 
+// Short: MeshLab shows all of it above the parameters, and a screen has only so many lines.
 inline const QString helpInput =
-	"<br><br><b>Input.</b> A point cloud with oriented normals that point outward; no mesh is "
-	"needed "
-	"(if the layer has faces, its vertices are the points). Points with non-finite coordinates or "
-	"without a normal take no part; exact duplicates count as one point. If the layer has no "
-	"normals, run <i>Compute normals for point sets</i> first.";
+	"<br><br><b>Input.</b> A point cloud with normals that point outward; of a mesh, the vertices. "
+	"Points with non-finite coordinates or without a normal take no part. No normals? Run <i>Compute "
+	"normals for point sets</i> first.";
 
 inline const QString helpConventions =
-	"<br><br><b>Conventions.</b> Convex is positive: a unit sphere with outward normals has "
-	"k1 = k2 = +1. k1 &gt;= k2 by signed value; PD1, PD2 and the normal of the fitted surface are "
-	"unit vectors at right angles. Lengths are in the layer's own units and curvatures in 1/length; the layer's matrix "
-	"is "
-	"not applied, so if it scales, freeze it first to get curvatures in world units. The result is "
-	"the same for any number of threads.";
+	"<br><br><b>Conventions.</b> Convex is positive: a unit sphere has k1 = k2 = +1; k1 &gt;= k2; PD1, PD2 "
+	"and the normal of the fitted surface are orthogonal unit vectors. Lengths are in the layer's units "
+	"(freeze its matrix first if that scales), curvatures in 1/length, spacings are distances between "
+	"neighbouring points.";
 
 inline const QString helpChaining =
 	"<br><br>Curvature that is already on the layer and still fits its points and normals is used; "

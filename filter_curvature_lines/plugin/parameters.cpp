@@ -128,26 +128,26 @@ void addEstimateParameters(RichParameterList& list)
 	list.addParam(RichFloat(
 		"region_scale",
 		Scalarm(defaults.curvature.paper.regionScale),
-		"Region scale",
+		"Region scale (Paper; spacings)",
 		"With Scale Paper only: radius of the operating region around each point, in local point "
 		"spacings (1 to 20). Larger regions resist more noise and blur more detail."));
 	list.addParam(RichInt(
 		"max_iterations",
 		defaults.curvature.paper.maxIterations,
-		"Maximum iterations",
+		"Maximum iterations (Paper)",
 		"With Scale Paper only: largest number of reweighting iterations per point (1 to 1000).",
 		true));
 	list.addParam(RichBool(
 		"feature_gate",
 		defaults.curvature.paper.featureGate,
-		"Feature gate",
+		"Feature gate (Paper)",
 		"With Scale Paper only: keep only neighbours that agree with the point itself before the "
 		"fit, so that the other side of a sharp edge has no influence.",
 		true));
 	list.addParam(RichFloat(
 		"boundary_threshold",
 		Scalarm(defaults.neighborhood.boundaryThreshold),
-		"Boundary threshold",
+		"Boundary threshold (spacings)",
 		"A sixth of the tangent plane counts as empty when its closest point is farther than this "
 		"many median point spacings (1 to 100); two neighbouring empty sixths make a boundary "
 		"point.",
@@ -170,7 +170,7 @@ void addUmbilicRatio(RichParameterList& list)
 	list.addParam(RichFloat(
 		"umbilic_ratio",
 		Scalarm(UmbilicOptions().ratio),
-		"Umbilic ratio",
+		"Umbilic ratio (0 to 1)",
 		"A point is umbilic, without principal directions of its own, when the smaller curvature "
 		"is more than this share of the larger one (0 to 1).",
 		true));

@@ -58,6 +58,8 @@ constexpr double mildPurity      = 1.0;
 constexpr double pilotAcceptance = 2.0; // noise units
 constexpr double gatedAcceptance = 3.0;
 constexpr double sharpPurity     = 0.5; // of smooth patches, below which edges are looked for
+constexpr double farthestNoise   = 10.0; // that a point is moved, in noise units
+constexpr double farthestSpacing = 0.05; // and spacings
 constexpr double sameSide        = 1e-3; // least weight of a neighbour across an edge
 constexpr Index  gainNeighbors   = 24;
 constexpr double smoothGain      = 0.1; // of a squared residual by gates: below it the gate only costs
@@ -98,6 +100,7 @@ private:
 	std::vector<double> sharpShare(
 		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
 	void       sharpen(Candidate& smooth, const Progress& progress) const;
+	void       leaveStrays(PatchBlend& blend) const;
 	bool       fits(const std::vector<double>& radii) const;
 	void       findUnits();
 	std::vector<double> radii(double factor) const; // of units
@@ -136,7 +139,11 @@ void RobustDenoiser::prepare(const Progress& progress)
 	const PointCloud&    cloud = m_input.cloud;
 	const NeighborSearch search(cloud.positions);
 	m_input.spacing = localSpacing(cloud, search, m_input.order, progress.sub(0.0, 0.5, stage));
+	// Only the side of the normals matters, and that of a single one may be wrong.
 	m_start = {cloud.positions, gateNormals(cloud, search, progress.sub(0.5, 1.0, stage))};
+	for (Index i = 0; i < size(); ++i)
+		if (cloud.normals.col(i).dot(m_start.normals.col(i)) > 0.0)
+			m_start.normals.col(i) = cloud.normals.col(i);
 }
 
 std::vector<double> RobustDenoiser::inSpacings(const std::vector<double>& lengths) const
@@ -438,6 +445,18 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 	}
 }
 
+// Noise does not carry a point so far: it is an outlier, or was taken for one of another face.
+void RobustDenoiser::leaveStrays(PatchBlend& blend) const
+{
+	for (Index i = 0; i < size(); ++i) {
+		const double most = farthestNoise * m_input.noise[i] + farthestSpacing * m_input.spacing[i];
+		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > most) {
+			blend.positions.col(i) = m_start.positions.col(i);
+			blend.normals.col(i)   = m_start.normals.col(i);
+		}
+	}
+}
+
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
 	prepare(progress.sub(0.0, 0.05, stage));
@@ -446,6 +465,8 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	findPlainPoints(progress.sub(0.15, 0.2, stage));
 	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
+
+	leaveStrays(cleaned.blend);
 
 	RobustDenoisingResult result;
 	result.positions = m_input.order.restore(cleaned.blend.positions);

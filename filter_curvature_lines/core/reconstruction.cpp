@@ -175,7 +175,7 @@ void fillPositionField(
 	meshing.noise      = result.noise;
 	meshing.mesh       = options.mesh;
 	result.mesh        = buildPositionFieldMesh(
-		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, ""));
+		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, "Building the mesh"));
 	clock.book("mesh");
 }
 

@@ -176,7 +176,7 @@ void fillPositionField(
 	meshing.mesh       = options.mesh;
 	meshing.keepLines  = options.keepLines;
 	result.mesh        = buildPositionFieldMesh(
-		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, ""));
+		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, "Building the mesh"));
 	result.lines       = std::move(result.mesh.lines);
 	clock.book("mesh");
 }

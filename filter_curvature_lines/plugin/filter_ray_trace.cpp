@@ -217,7 +217,7 @@ FilterResults apply(const FilterContext& context)
 	const RayTracer tracer(*surface, control, options.image);
 	results.seconds("preparation", stage.lap());
 	const Picture picture =
-		renderPicture(tracer, control, colors, lines, camera, options, context.progress.sub(0.2, 1.0, ""));
+		renderPicture(tracer, control, colors, lines, camera, options, context.progress.sub(0.2, 1.0, "Drawing"));
 	results.seconds("rendering", stage.lap());
 	savePicture(picture, path);
 

@@ -80,7 +80,8 @@ RichParameterList parameters(const MeshDocument&)
 		"keep_intermediate_layers",
 		false,
 		"Keep intermediate layers",
-		"Add the cleaned cloud, with its curvature, and the lines as layers of their own."));
+		"Add the cleaned cloud, with its curvature and how far each point moved, and the lines as layers of their "
+		"own."));
 	return list;
 }
 
@@ -147,6 +148,10 @@ void writeCleanedCloud(
 	const VertexCurvatures values = perVertex(points, own, result.field, result.umbilics.umbilic);
 	writeCurvature(layer, points, values);
 	writeQuality(layer, points, 0.5 * (values.k1 + values.k2));
+	Eigen::VectorXd moved(n);
+	for (Index i = 0; i < n; ++i)
+		moved[i] = (result.cloud.positions.col(i) - frame.cloud.positions.col(result.kept[i])).norm();
+	writeAttribute(layer, points, "moved", frame.diagonal * moved);
 }
 
 void reportStages(FilterResults& results, const ReconstructionResult& result)

@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run it after a change of parameters: python python_bindings/filter_scripts/write_scripts.py"""
 
+import os
 from pathlib import Path
 
-import numpy as np
-import pymeshlab
-import pymeshlab_curvature_lines  # noqa: F401
+os.environ["QT_HASH_SEED"] = "0"  # the order of attributes in the files
+
+import numpy as np  # noqa: E402
+import pymeshlab  # noqa: E402
+import pymeshlab_curvature_lines  # noqa: E402, F401
 
 FOLDER = Path(__file__).parent
 CLEANING = [

@@ -1,4 +1,4 @@
-# The command curvature-lines: a scan in, a curvature-aligned mesh, lines and a report out.
+# The command curvature-lines: scans in; curvature-aligned meshes, lines, curvature and reports out.
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Command line of the whole pipeline."""
 
@@ -8,9 +8,12 @@ import argparse
 import re
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from pathlib import Path
+from typing import NamedTuple
+
+import pymeshlab
 
 from . import __version__
 from .pipeline import Reconstruction, load_cloud, reconstruct
@@ -19,29 +22,67 @@ from .report import number, write_report
 
 METHODS = {"position-field": "Position Field", "traced-lines": "Traced Lines"}
 NORMALS = {"if-missing": "If Missing", "never": "Never", "always": "Always"}
+# What PyMeshLab reads that holds points.
+SUFFIXES = ".ply .obj .off .stl .xyz .pts .ptx .asc .e57 .3ds .3mf .gts .ctm .dae .vmi .wrl .gltf .glb".split()
+
+_DESCRIPTION = """\
+Turns point clouds into quad-dominant meshes aligned with their lines of curvature: leaves outliers out, removes
+noise, estimates principal curvatures and directions, and builds the mesh. Of a mesh only the vertices and their
+normals are used. Normals should point outward; without any, they are estimated."""
+
+_EXAMPLES = """\
+examples:
+  curvature-lines scan.ply -o quads.obj --report scan.html
+      the mesh, and a page with pictures and histograms to judge it by
+  curvature-lines scan.ply -o quads.obj --target-vertices 2000
+      about so many vertices; without, the cloud decides
+  curvature-lines part.stl -o part.obj --no-outliers --no-denoise
+      for exact data: every point stays where it is
+  curvature-lines scan.ply -o quads.obj --lines lines.obj --curvature points.ply
+      lines of curvature as polylines; the cleaned points with curv_k1, curv_k2, …
+  curvature-lines scans/ more.ply -o results/ --report results/
+      every cloud of a folder: results/NAME_quads.obj and results/NAME.html; --lines
+      and --curvature take folders then, too
+
+Quads and lines need OBJ files: PLY drops polygons and edges.
+exit status: 0 done, 1 something failed (a folder's other clouds are still done), 2 wrong usage"""
+
+
+class Job(NamedTuple):
+    """One cloud, and the files to write."""
+
+    cloud: Path
+    mesh: Path
+    lines: Path | None
+    curvature: Path | None
+    report: Path | None
 
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
     options = argparse.ArgumentParser(
         prog="curvature-lines",
-        description="Turns a point cloud into a quad-dominant mesh aligned with its lines of curvature. "
-        "Of a mesh only the vertices and their normals are used.",
-        epilog="Exit status: 0 done, 1 failed, 2 wrong usage.",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    options.add_argument("input", type=Path, metavar="INPUT", help="any file PyMeshLab reads")
-    options.add_argument("-o", "--output", type=Path, required=True, metavar="OUTPUT.obj", help="the mesh")
-    options.add_argument("--lines", type=Path, metavar="LINES.obj", help="the lines of curvature as well")
-    options.add_argument("--report", type=Path, metavar="REPORT.html", help="counts, timings and a picture")
-    options.add_argument("--method", choices=METHODS, default="position-field", help="how the mesh is found")
-    options.add_argument("--target-vertices", type=int, default=0, metavar="N", help="0 (default): from the cloud")
-    options.add_argument("--epsilon", type=float, default=0, metavar="E", help="chord error, fraction of the diagonal")
-    options.add_argument("--normals", choices=NORMALS, default="if-missing", help="when to estimate normals")
-    options.add_argument("--no-outliers", action="store_true", help="keep every point")
-    options.add_argument("--no-denoise", action="store_true", help="keep every point where it is")
-    options.add_argument("--no-smoothing", action="store_true", help="keep the directions as estimated")
-    options.add_argument("--triangulate", action="store_true", help="triangles instead of polygons")
-    options.add_argument("--close-holes", action="store_true")
+    options.add_argument("input", type=Path, nargs="+", metavar="INPUT", help="files that PyMeshLab reads, or folders of them")
+    files = options.add_argument_group("files to write (folders, when there are several clouds)")
+    files.add_argument("-o", "--output", type=Path, required=True, metavar="OUTPUT.obj", help="the mesh")
+    files.add_argument("--lines", type=Path, metavar="LINES.obj", help="lines of curvature, about as dense as the mesh")
+    files.add_argument("--curvature", type=Path, metavar="POINTS.ply", help="the cleaned points with the curv_* attributes")
+    files.add_argument("--report", type=Path, metavar="REPORT.html", help="pictures, histograms, counts, parameters, versions; one file, opens offline")
+    mesh = options.add_argument_group("the mesh")
+    mesh.add_argument("--target-vertices", type=int, default=0, metavar="N", help="about how many vertices; 0 (default): from the cloud")
+    mesh.add_argument("--epsilon", type=float, default=0, metavar="E", help="instead: chord error between lines, as a fraction of the bounding box's diagonal")
+    mesh.add_argument("--method", choices=METHODS, default="position-field", help="position-field (default): most quads, certain topology; traced-lines: as published")
+    mesh.add_argument("--triangulate", action="store_true", help="triangles instead of polygons; the output may then be any format")
+    mesh.add_argument("--close-holes", action="store_true", help="fill holes that are small against the mesh")
+    cloud = options.add_argument_group("the cloud")
+    cloud.add_argument("--normals", choices=NORMALS, default="if-missing", help="when to estimate normals (default: if-missing)")
+    cloud.add_argument("--no-outliers", action="store_true", help="keep every point")
+    cloud.add_argument("--no-denoise", action="store_true", help="keep every point where it is")
+    cloud.add_argument("--no-smoothing", action="store_true", help="keep the directions as estimated (traced-lines)")
     options.add_argument("--quiet", action="store_true", help="no progress bar, no table")
     options.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     return options
@@ -49,37 +90,76 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit status."""
-    options = _checked(arguments)
-    try:
-        _run(options)
-    except KeyboardInterrupt:
-        print("curvature-lines: interrupted", file=sys.stderr)
-        return 1
-    except Exception as error:  # a user's file may make anything fail; the command says what, in one line
-        print(f"curvature-lines: {_one_line(error)}", file=sys.stderr)
-        return 1
-    return 0
-
-
-def _checked(arguments: Sequence[str] | None) -> argparse.Namespace:
-    """Refuses what cannot end well before any work is done."""
     command = parser()
     options = command.parse_args(arguments)
-    if not options.input.is_file():
-        command.error(f"no such file: {options.input}")
     if options.target_vertices < 0:
         command.error("--target-vertices must not be negative")
-    for file in filter(None, (options.output, options.lines, options.report)):
+    try:
+        jobs = list(_jobs(options))
+    except ValueError as error:
+        command.error(str(error))
+    status = 0
+    for job in jobs:
+        try:
+            _run(job, options)
+        except KeyboardInterrupt:
+            print("curvature-lines: interrupted", file=sys.stderr)
+            return 1
+        except Exception as error:  # a user's file may make anything fail; the command says what, in one line
+            print(f"curvature-lines: {job.cloud}: {_one_line(error)}", file=sys.stderr)
+            status = 1
+    return status
+
+
+def _jobs(options: argparse.Namespace) -> Iterator[Job]:
+    """Refuses, by ValueError, what cannot end well before any work is done."""
+    clouds: list[Path] = []
+    for given in options.input:
+        found = [given]
+        if given.is_dir():
+            found = sorted(file for file in given.iterdir() if file.suffix.lower() in SUFFIXES)
+        elif not given.is_file():
+            raise ValueError(f"no such file or folder: {given}")
+        if not found:
+            raise ValueError(f"no point clouds in {given} ({' '.join(SUFFIXES)})")
+        clouds += found
+    if len(options.input) > 1 or options.input[0].is_dir():
+        yield from _jobs_into_folders(clouds, options)
+        return
+    for file in filter(None, (options.output, options.lines, options.curvature, options.report)):
+        if file.is_dir():
+            raise ValueError(f"a folder, not a file: {file}")
         if not file.absolute().parent.is_dir():
-            command.error(f"no such folder: {file.parent}")
+            raise ValueError(f"no such folder: {file.parent}")
     if options.output.suffix.lower() != ".obj" and not options.triangulate:
-        command.error(f"only OBJ files keep polygons: {options.output} (or add --triangulate)")
+        raise ValueError(f"only OBJ files keep polygons: {options.output} (or add --triangulate)")
     if options.lines and options.lines.suffix.lower() != ".obj":
-        command.error(f"only OBJ files keep lines: {options.lines}")
-    return options
+        raise ValueError(f"only OBJ files keep lines: {options.lines}")
+    if options.curvature and options.curvature.suffix.lower() != ".ply":
+        raise ValueError(f"only PLY files keep the attributes: {options.curvature}")
+    yield Job(clouds[0], options.output, options.lines, options.curvature, options.report)
 
 
-def _run(options: argparse.Namespace) -> None:
+def _jobs_into_folders(clouds: list[Path], options: argparse.Namespace) -> Iterator[Job]:
+    names = [cloud.stem for cloud in clouds]
+    if twice := {name for name in names if names.count(name) > 1}:
+        raise ValueError(f"clouds of the same name would overwrite each other's results: {', '.join(sorted(twice))}")
+    for folder in filter(None, (options.output, options.lines, options.curvature, options.report)):
+        if folder.is_file() or folder.suffix:
+            raise ValueError(f"several clouds need a folder to write to, not a file: {folder}")
+        if not folder.absolute().parent.is_dir():
+            raise ValueError(f"no such folder: {folder.parent}")
+    for cloud in clouds:
+        yield Job(
+            cloud,
+            options.output / f"{cloud.stem}_quads.obj",
+            options.lines and options.lines / f"{cloud.stem}_lines.obj",
+            options.curvature and options.curvature / f"{cloud.stem}_curvature.ply",
+            options.report and options.report / f"{cloud.stem}.html",
+        )
+
+
+def _run(job: Job, options: argparse.Namespace) -> None:
     parameters = {
         "method": METHODS[options.method],
         "target_vertices": options.target_vertices,
@@ -91,31 +171,49 @@ def _run(options: argparse.Namespace) -> None:
         "triangulate": options.triangulate,
         "close_holes": options.close_holes,
     }
-    cloud = load_cloud(options.input)
-    with nullcontext() if options.quiet else progress_bar() as report:
-        result = reconstruct(cloud, report, lines=options.lines is not None, **parameters)
+    cloud = load_cloud(job.cloud)
+    title = f"{job.cloud.stem[:20]:<22}" if job.mesh != options.output else ""
+    with nullcontext() if options.quiet else progress_bar(title) as report:
+        result = reconstruct(cloud, report, lines=job.lines is not None, **parameters)
 
-    result.save(result.mesh, options.output)
-    if options.lines:
-        result.save(result.lines, options.lines)
+    for file in filter(None, job[1:]):
+        file.parent.mkdir(exist_ok=True)
+    result.save(result.mesh, job.mesh)
+    if job.lines:
+        result.save(result.lines, job.lines)
+    if job.curvature:
+        result.save_curvature(job.curvature)
     if not options.quiet:
         for name, value in result.counts.items():
             print(f"{name.replace('_', ' '):<28}{number(value):>12}")
-    if options.report:
-        tables = {"Counts": result.counts, "Seconds": result.seconds}
-        write_report(options.report, options.input.name, tables, _picture(result))
+    if job.report:
+        used = result.parameters(parameters)
+        write_report(job.report, job.cloud.name, result, used, _pictures(result))
 
 
-def _picture(result: Reconstruction) -> bytes | None:
-    """The mesh as PNG, when the optional renderer is installed."""
+def _pictures(result: Reconstruction) -> dict[str, bytes]:
+    """Of the cleaned cloud and the mesh, as PNG, when the optional renderer is installed."""
     try:
         from .render import render
     except ImportError:
-        return None
+        return {}
+    pictures = {"The cleaned cloud, coloured by mean curvature": result.cleaned, "The mesh": result.mesh}
+    if result.lines is not None:
+        pictures["Lines of curvature, red along the larger curvature"] = result.lines
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "mesh.png"
-        render(file, result.layer(result.mesh))
-        return file.read_bytes()
+        file = Path(folder) / "picture.png"
+
+        def picture(*layers: pymeshlab.Mesh) -> bytes:
+            render(file, *layers, size=(800, 600))
+            return file.read_bytes()
+
+        mesh = result.layer(result.mesh)
+        shown = {result.lines: [mesh]} if result.lines is not None else {}
+        return {
+            caption: picture(*shown.get(number, []), result.layer(number))
+            for caption, number in pictures.items()
+            if result.layer(number).vertex_number()
+        }
 
 
 def _one_line(error: Exception) -> str:

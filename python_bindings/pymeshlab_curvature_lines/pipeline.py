@@ -16,6 +16,8 @@ from .progress import progress
 
 Report = Callable[[str, int], None]
 
+_SAVED_ATTRIBUTE = "__ca_vs__"  # how the host calls "save this scalar attribute of vertices"
+
 
 @dataclass
 class Reconstruction:
@@ -34,6 +36,18 @@ class Reconstruction:
     def save(self, number: int, file: str | PathLike[str]) -> None:
         self.meshset.set_current_mesh(number)
         self.meshset.save_current_mesh(str(file))
+
+    def save_curvature(self, file: str | PathLike[str]) -> None:
+        """The cleaned cloud as a PLY file, with its normals and every ``curv_*`` attribute."""
+        self.meshset.set_current_mesh(self.cleaned)
+        offered = self.meshset.filter_parameter_values("ply")
+        attributes = {name: True for name in offered if name.startswith(_SAVED_ATTRIBUTE)}
+        self.meshset.save_current_mesh(str(file), save_vertex_normal=True, save_vertex_quality=True, **attributes)
+
+    def parameters(self, given: dict[str, object]) -> dict[str, object]:
+        """All parameters of the whole pipeline: those given, and the defaults of the rest."""
+        values = self.meshset.filter_parameter_values("generate_surface_reconstruction_curvature_aligned")
+        return values | given | {"keep_intermediate_layers": True}
 
 
 def load_cloud(file: str | PathLike[str]) -> pymeshlab.MeshSet:

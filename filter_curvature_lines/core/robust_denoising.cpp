@@ -450,10 +450,8 @@ void RobustDenoiser::leaveStrays(PatchBlend& blend) const
 {
 	for (Index i = 0; i < size(); ++i) {
 		const double most = farthestNoise * m_input.noise[i] + farthestSpacing * m_input.spacing[i];
-		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > most) {
-			blend.positions.col(i) = m_start.positions.col(i);
-			blend.normals.col(i)   = m_start.normals.col(i);
-		}
+		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > most)
+			blend.positions.col(i) = m_input.cloud.positions.col(i);
 	}
 }
 

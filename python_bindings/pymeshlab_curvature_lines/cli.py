@@ -106,13 +106,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print("curvature-lines: interrupted", file=sys.stderr)
             return 1
         except Exception as error:  # a user's file may make anything fail; the command says what, in one line
-            print(f"curvature-lines: {job.cloud}: {_one_line(error)}", file=sys.stderr)
+            print(f"curvature-lines: {job.cloud.name}: {_one_line(error)}", file=sys.stderr)
             status = 1
     return status
 
 
 def _jobs(options: argparse.Namespace) -> Iterator[Job]:
     """Refuses, by ValueError, what cannot end well before any work is done."""
+    # The host changes the working directory when a file cannot be read.
+    options.input = [given.absolute() for given in options.input]
+    for name in ("output", "lines", "curvature", "report"):
+        if given := getattr(options, name):
+            setattr(options, name, given.absolute())
     clouds: list[Path] = []
     for given in options.input:
         found = [given]
@@ -129,7 +134,7 @@ def _jobs(options: argparse.Namespace) -> Iterator[Job]:
     for file in filter(None, (options.output, options.lines, options.curvature, options.report)):
         if file.is_dir():
             raise ValueError(f"a folder, not a file: {file}")
-        if not file.absolute().parent.is_dir():
+        if not file.parent.is_dir():
             raise ValueError(f"no such folder: {file.parent}")
     if options.output.suffix.lower() != ".obj" and not options.triangulate:
         raise ValueError(f"only OBJ files keep polygons: {options.output} (or add --triangulate)")
@@ -147,7 +152,7 @@ def _jobs_into_folders(clouds: list[Path], options: argparse.Namespace) -> Itera
     for folder in filter(None, (options.output, options.lines, options.curvature, options.report)):
         if folder.is_file() or folder.suffix:
             raise ValueError(f"several clouds need a folder to write to, not a file: {folder}")
-        if not folder.absolute().parent.is_dir():
+        if not folder.parent.is_dir():
             raise ValueError(f"no such folder: {folder.parent}")
     for cloud in clouds:
         yield Job(
@@ -170,6 +175,7 @@ def _run(job: Job, options: argparse.Namespace) -> None:
         "smooth_directions": not options.no_smoothing,
         "triangulate": options.triangulate,
         "close_holes": options.close_holes,
+        "scale_mode": "Adaptive",
     }
     cloud = load_cloud(job.cloud)
     title = f"{job.cloud.stem[:20]:<22}" if job.mesh != options.output else ""

@@ -3,7 +3,10 @@
 #include "advancing_front.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
+#include <random>
 
 #include <CGAL/Advancing_front_surface_reconstruction.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -13,6 +16,8 @@ namespace curvature_lines {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+constexpr double tieBreak = 1e-6; // of the longest edge
 
 // CGAL's own priority, the radius of the smallest empty ball, unless an edge is too long.
 struct BoundedPriority {
@@ -36,6 +41,20 @@ struct BoundedPriority {
 	}
 };
 
+// Where triangles are equally good, as on a grid, CGAL decides by addresses. Shifts far below the noise, told by
+// the place alone, leave nothing to decide.
+Kernel::Point_3 withoutTies(const Eigen::Vector3d& p, double longestEdge)
+{
+	std::uint64_t bits[3], seed = 0;
+	std::memcpy(bits, p.data(), sizeof bits);
+	for (const std::uint64_t b : bits)
+		seed = (seed ^ b) * 0x9e3779b97f4a7c15u;
+	std::minstd_rand                       random(static_cast<std::uint32_t>(seed >> 32));
+	std::uniform_real_distribution<double> shift(-tieBreak * longestEdge, tieBreak * longestEdge);
+	const double                           x = shift(random), y = shift(random), z = shift(random);
+	return {p.x() + x, p.y() + y, p.z() + z};
+}
+
 } // namespace
 
 std::vector<Triangle>
@@ -47,7 +66,7 @@ advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdg
 	std::vector<Kernel::Point_3> input;
 	input.reserve(points.cols());
 	for (Eigen::Index i = 0; i < points.cols(); ++i)
-		input.emplace_back(points(0, i), points(1, i), points(2, i));
+		input.push_back(withoutTies(points.col(i), longestEdge[i]));
 	std::vector<std::array<std::size_t, 3>> found;
 	CGAL::advancing_front_surface_reconstruction(
 		input.begin(), input.end(), std::back_inserter(found), BoundedPriority{longestEdge});

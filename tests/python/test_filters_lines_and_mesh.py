@@ -373,6 +373,20 @@ def test_pipeline_topology(surface, points, euler, rims):
     assert report["creases"] == (12 if surface == "cube" else 0)
 
 
+def test_pipeline_on_a_grid_is_the_same_every_time():
+    """Where all triangles are equally good nothing but the points may decide."""
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(200) * np.pi / 100, np.arange(100) * np.pi / 50, indexing="ij"))
+    normals = np.c_[np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)]
+    points = 0.4 * normals + np.c_[np.cos(u), np.sin(u), 0.0 * u]
+    results = []
+    for _ in range(2):
+        meshes = pymeshlab.MeshSet()
+        meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=points, v_normals_matrix=normals))
+        meshes.apply_filter(PIPELINE, **QUICK)
+        results.append(meshes.current_mesh().vertex_matrix())
+    assert np.array_equal(*results)
+
+
 def test_pipeline_anisotropy(torus):
     even, uneven = (layer_of(torus).apply_filter(PIPELINE, anisotropy=a, target_vertices=200, **QUICK) for a in (1, 3))
     assert even["euler_characteristic"] == uneven["euler_characteristic"] == 0

@@ -35,7 +35,7 @@ public:
 	{
 	}
 
-	bool run(const Progress& progress);
+	void run(const Progress& progress);
 
 private:
 	void findGroups();
@@ -105,24 +105,26 @@ bool Appeal::belongs(const VoterCloud& heard, Index i) const
 	return accepted >= acceptedShare * on;
 }
 
-bool Appeal::run(const Progress& progress)
+void Appeal::run(const Progress& progress)
 {
 	findGroups();
-	bool any = false;
-	for (int pass = 0; pass < mostPasses && !m_grouped.empty(); ++pass) {
-		std::vector<char> heard(m_rejected.size());
-		for (std::size_t i = 0; i < heard.size(); ++i)
-			heard[i] = !m_rejected[i];
-		for (const Index i : m_grouped)
-			heard[i] = 1;
-		std::vector<Index> active;
-		for (std::size_t i = 0; i < heard.size(); ++i)
-			if (heard[i])
-				active.push_back(static_cast<Index>(i));
-		const Eigen::Matrix3Xd positions = columnsOf(m_cloud.positions, active);
-		const NeighborSearch   search(positions);
-		const VoterCloud       cloud{
-            m_cloud.positions, m_cloud.crowding, m_cloud.rank, m_cloud.all, active, search};
+	if (m_grouped.empty())
+		return;
+	// Voters see the accepted points and the groups, whatever is taken back.
+	std::vector<char> heard(m_rejected.size());
+	for (std::size_t i = 0; i < heard.size(); ++i)
+		heard[i] = !m_rejected[i];
+	for (const Index i : m_grouped)
+		heard[i] = 1;
+	std::vector<Index> active;
+	for (std::size_t i = 0; i < heard.size(); ++i)
+		if (heard[i])
+			active.push_back(static_cast<Index>(i));
+	const Eigen::Matrix3Xd positions = columnsOf(m_cloud.positions, active);
+	const NeighborSearch   search(positions);
+	const VoterCloud       cloud{
+        m_cloud.positions, m_cloud.crowding, m_cloud.rank, m_cloud.all, active, search};
+	for (int pass = 0; pass < mostPasses; ++pass) {
 		std::vector<char> restored(m_grouped.size(), 0);
 		parallelFor(static_cast<Index>(m_grouped.size()), progress, [&](Index k) {
 			restored[k] = belongs(cloud, m_grouped[k]);
@@ -134,16 +136,14 @@ bool Appeal::run(const Progress& progress)
 			else
 				left.push_back(m_grouped[k]);
 		if (left.size() == m_grouped.size())
-			break;
+			return;
 		m_grouped = std::move(left);
-		any       = true;
 	}
-	return any;
 }
 
 } // namespace
 
-bool restoreGroups(
+void restoreGroups(
 	const VoterCloud&           cloud,
 	const std::vector<Verdict>& verdicts,
 	double                      noise,
@@ -151,7 +151,7 @@ bool restoreGroups(
 	std::vector<char>&          rejected,
 	const Progress&             progress)
 {
-	return Appeal(cloud, verdicts, noise, sensitivity, rejected).run(progress);
+	Appeal(cloud, verdicts, noise, sensitivity, rejected).run(progress);
 }
 
 } // namespace curvature_lines

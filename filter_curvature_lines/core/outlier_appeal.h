@@ -8,8 +8,8 @@ namespace curvature_lines {
 
 // Points of large groups are taken back where small voters see one surface run on from the accepted points
 // into the group. Neither a cluster of outliers nor a patch beside the surface is: their edge is a step.
-// `cloud.active` is not looked at; `verdicts` are of the vote that rejected. True if any was taken back.
-bool restoreGroups(
+// `cloud.active` is not looked at; `verdicts` are of the vote that rejected.
+void restoreGroups(
 	const VoterCloud&           cloud,
 	const std::vector<Verdict>& verdicts,
 	double                      noise, // where a verdict has none

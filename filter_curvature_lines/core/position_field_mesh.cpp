@@ -11,6 +11,7 @@
 #include "polygon_splitting.h"
 #include "position_field_lines.h"
 #include "quad_cleanup.h"
+#include "rim_fit.h"
 #include "surface_projection.h"
 
 namespace curvature_lines {
@@ -89,8 +90,8 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	if (mesh.triangleCount() == 0)
 		return result;
 
-	const std::vector<Rim> rims  = findRims(mesh);
-	DirectionGuide         guide = directionGuide(scaffold, curvature);
+	std::vector<Rim> rims  = findRims(mesh);
+	DirectionGuide   guide = directionGuide(scaffold, curvature);
 	fitRims(rims, cloud, guide.normals, options.noise, scaffold);
 	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
 	const CrossField       field     = smoothCrossField(mesh, guide);

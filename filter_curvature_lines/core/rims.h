@@ -1,5 +1,4 @@
-// The rims of a scaffold: where they turn a corner, and where the surface really ends. The front stops at the
-// outermost points; the rim they were drawn from lies a little further out, by how densely they lie.
+// The rims of a scaffold and the corners they turn.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -13,19 +12,11 @@ struct Rim {
 
 	Index size() const { return static_cast<Index>(vertices.size()); }
 	Index at(Index k) const { return vertices[(k % size() + size()) % size()]; }
+	bool  isCorner(Index k) const { return corner[(k % size() + size()) % size()] != 0; }
 	// Along the rim at its k-th vertex, from neighbours on the same side of corners; unit.
 	Eigen::Vector3d tangent(Index k, const Eigen::Matrix3Xd& positions) const;
 };
 
 std::vector<Rim> findRims(const TriangleMesh& mesh);
-
-// Moves the vertices of the rims. `normals` are those of the vertices; `noise` that of the cloud's positions
-// (standard deviation, a length): it carries points beyond the rim.
-void fitRims(
-	const std::vector<Rim>& rims,
-	const PointCloud&       cloud,
-	const Eigen::Matrix3Xd& normals,
-	double                  noise,
-	Scaffold&               scaffold);
 
 } // namespace curvature_lines

@@ -35,6 +35,7 @@ constexpr double creaseStep     = 0.93;
 constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
 constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
 constexpr int    attempts       = 3;
+constexpr double shortCrease      = 10.0; // of the distance of vertices
 constexpr Index  rimFlaws       = 5;       // a rim or a handle counts as so many defects
 constexpr double toleratedDefects = 0.002; // per vertex
 
@@ -326,14 +327,61 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	return scaffold;
 }
 
-// Per vertex: a coarse attempt has fewer of everything. True rims and handles are in every attempt, false ones are
-// not.
-double flawsOf(const Scaffold& scaffold)
+// Rims and handles. True ones are in every attempt, false ones are not.
+Index topologicalFeatures(const Scaffold& scaffold)
 {
 	const auto  rims    = static_cast<Index>(scaffold.mesh.rims().size());
-	const Index handles = (2 * scaffold.components - scaffold.mesh.eulerCharacteristic() - rims) / 2;
-	const Index flaws   = scaffold.defects + scaffold.lostCreaseEdges + rimFlaws * (rims + handles);
+	const Index handles =
+		(2 * scaffold.components - scaffold.mesh.eulerCharacteristic() - rims) / 2;
+	return rims + handles;
+}
+
+// Per vertex: a coarse attempt has fewer of everything.
+double flawsOf(const Scaffold& scaffold)
+{
+	const Index flaws = scaffold.defects + scaffold.lostCreaseEdges +
+						rimFlaws * topologicalFeatures(scaffold);
 	return double(flaws) / std::max<Index>(1, scaffold.mesh.vertexCount());
+}
+
+std::vector<FeatureLine> longerThan(double least, const std::vector<FeatureLine>& creases)
+{
+	std::vector<FeatureLine> kept;
+	for (const FeatureLine& crease : creases) {
+		double length = 0.0;
+		for (Eigen::Index k = 1; k < crease.points.cols(); ++k)
+			length += (crease.points.col(k) - crease.points.col(k - 1)).norm();
+		if (length >= least)
+			kept.push_back(crease);
+	}
+	return kept;
+}
+
+// The thinning with the fewest flaws.
+Scaffold bestThinning(
+	const PointSample&              sample,
+	const std::vector<Index>&       order,
+	const std::vector<FeatureLine>& creases,
+	double                          distance,
+	double                          cell,
+	const ScaffoldOptions&          options,
+	const Progress&                 progress)
+{
+	Scaffold best;
+	double   fewest = 0.0;
+	for (int k = 0; k < attempts; ++k, distance *= coarser) {
+		progress.report(double(k) / attempts);
+		Scaffold next = attempt(
+			chooseSites(sample, order, creases, distance, options), distance, cell, options);
+		const double flaws = flawsOf(next);
+		if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
+			best   = std::move(next);
+			fewest = flaws;
+		}
+		if (best.defects + best.lostCreaseEdges <= toleratedDefects * best.mesh.vertexCount())
+			break;
+	}
+	return best;
 }
 
 } // namespace
@@ -366,20 +414,20 @@ Scaffold buildScaffold(
 				 ? spacing / poissonSpacing * std::sqrt(cloud.size() / options.targetVertices)
 				 : 0.0;
 
-	Scaffold best;
-	double   fewest   = 0.0;
-	double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
-	for (int k = 0; k < attempts; ++k, distance *= coarser) {
-		progress.report(double(k) / attempts);
-		Scaffold next = attempt(
-			chooseSites(sample, order, creases, distance, options), distance, cell, options);
-		const double flaws = flawsOf(next);
-		if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
-			best   = std::move(next);
-			fewest = flaws;
-		}
-		if (best.defects + best.lostCreaseEdges <= toleratedDefects * best.mesh.vertexCount())
+	const double distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
+	Scaffold     best     = bestThinning(sample, order, creases, distance, cell, options, progress);
+	// The front can stumble over creases that are none, as between wrinkles; without them it need not.
+	std::vector<FeatureLine> kept = creases;
+	for (const double least : {shortCrease * distance, double(INFINITY)}) {
+		if (kept.empty() || topologicalFeatures(best) == 0)
 			break;
+		const std::size_t before = kept.size();
+		kept                     = longerThan(least, kept);
+		if (kept.size() == before)
+			continue;
+		Scaffold next = bestThinning(sample, order, kept, distance, cell, options, progress);
+		if (topologicalFeatures(next) < topologicalFeatures(best))
+			best = std::move(next);
 	}
 	return best;
 }

@@ -120,6 +120,26 @@ TEST(Scaffold, HoldsTheCreasesAsEdges)
 
 // A square of 2 x 2 cells about a crease that no triangle has: one of its points is missing, the other two are
 // joined across it.
+// As wrinkles give: short lines that hover over the surface.
+TEST(Scaffold, LeavesOutCreasesThatWouldTearIt)
+{
+	const PointCloud         cloud = cloudOf(request("sphere", 4000));
+	samples::Random          random(7, 0);
+	std::vector<FeatureLine> creases;
+	for (int k = 0; k < 150; ++k) {
+		const Eigen::Vector3d from = random.normal3().normalized();
+		const Eigen::Vector3d to   = (from + 0.15 * random.normal3()).normalized();
+		FeatureLine           crease;
+		crease.points.resize(3, 2);
+		crease.points << (1.0 + 0.12 * random.normal()) * from, (1.0 + 0.12 * random.normal()) * to;
+		creases.push_back(crease);
+	}
+	const Scaffold scaffold = buildScaffold(cloud, creases);
+	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
+	EXPECT_TRUE(scaffold.mesh.rims().empty());
+	EXPECT_EQ(scaffold.components, 1);
+}
+
 TEST(CreaseRecovery, PutsMissingPointsInAndFlipsWhatCrosses)
 {
 	Eigen::Matrix3Xd points(3, 9);

@@ -21,6 +21,7 @@ TRACED = (1066, 800)
 COW, BUNNY, ARMADILLO = "cow_loop2_46433_derived.ply", "bunny_oriented.ply", "armadillo.obj"
 HAND, TOOTH = "hand_closed.obj", "tooth_pongo_EM.ply"
 TRACED_CROSSINGS = 4000
+EPSILONS, LEAST_SPACING, MOST_SPACING = (1e-5, 1e-4, 1e-3), 0.003, 0.5  # the latter two in diagonals
 ENDS = ("lines", "rims", "creases", "umbilics")
 Y_UP = (0.0, 1.0, 0.0)
 VIEWS = {
@@ -138,7 +139,11 @@ def quads(path: Path) -> Path:
     return picture
 
 
-def lines_of_curvature(path: Path) -> Path:
+def bounded_to(diagonal: float, epsilon: float) -> dict[str, float]:
+    return {"epsilon": epsilon, "min_spacing": LEAST_SPACING * diagonal, "max_spacing": MOST_SPACING * diagonal}
+
+
+def lines_of_curvature(path: Path, epsilon: float | None = None) -> Path:
     """Both families traced on the points alone, drawn over them."""
     meshes = pymeshlab.MeshSet()
     meshes.load_new_mesh(str(path))
@@ -146,10 +151,12 @@ def lines_of_curvature(path: Path) -> Path:
         meshes = loaded(path)
         forget_triangles(meshes)
     cloud = meshes.current_mesh_id()
-    report = meshes.generate_curvature_lines(target_vertices=TRACED_CROSSINGS)
-    print(f"{path.name}: {report['lines']} lines, {report['closed_lines']} closed, ends {[report[f'ends_at_{what}'] for what in ENDS]} at {ENDS}")
+    diagonal = meshes.current_mesh().bounding_box().diagonal()
+    asked = bounded_to(diagonal, epsilon) if epsilon else {"target_vertices": TRACED_CROSSINGS}
+    report = meshes.generate_curvature_lines(**asked)
+    print(f"{path.name}: {report['crossings']} crossings, {report['lines']} lines, {report['closed_lines']} closed, ends {[report[f'ends_at_{what}'] for what in ENDS]} at {ENDS}")
     view, up = VIEWS.get(path.name, (None, None))
-    picture = OUT / f"{path.stem}_lines.png"
+    picture = OUT / f"{path.stem}_lines{epsilon or ''}.png"
     render(picture, meshes.mesh(cloud), meshes.current_mesh(), view=view, up=up, size=PANEL)
     return picture
 
@@ -169,13 +176,15 @@ def gallery(folder: Path, topics: list[str]) -> None:
     if "lines" in topics:
         rows = [(HAND, TOOTH), (RANGE_MAP, BUNNY)]
         write_strips("gallery_lines", [[lines_of_curvature(folder / name) for name in row] for row in rows], 1800)
+    if "epsilon" in topics:
+        write_strips("gallery_epsilon", [[lines_of_curvature(folder / COW, epsilon) for epsilon in EPSILONS]], 2100)
     if "quads" in topics:
         rows = [(BUNNY, ARMADILLO, COW), (HAND, TOOTH, ANGEL)]
         write_strips("gallery_quads", [[quads(folder / name) for name in row] for row in rows], 1800)
 
 
 def main() -> None:
-    topics = ["scans", "meshes", "curvature", "ray_tracing", "lines", "quads"]
+    topics = ["scans", "meshes", "curvature", "ray_tracing", "lines", "epsilon", "quads"]
     parser = argparse.ArgumentParser(description=__doc__)
     kinds = parser.add_subparsers(dest="kind", required=True)
     kinds.add_parser("pipeline", help="from what scripts/demo.sh left in out/")

@@ -35,6 +35,8 @@ void limitGrowth(
 
 	const auto relax = [&](Index i) {
 		for (Index j : minimum.neighbors[i]) {
+			if (d[j] <= d[i])
+				continue;
 			const double limit =
 				d[i] + gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
 			if (limit < d[j]) {

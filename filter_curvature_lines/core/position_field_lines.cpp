@@ -1,8 +1,12 @@
-// Chords joined to chains, and the family of each.
+// Chords joined to chains, the family of each chord, and chains cut where it changes.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "position_field_lines.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+
+#include <Eigen/SparseCholesky>
 
 namespace curvature_lines {
 
@@ -10,29 +14,94 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double unknownWeight = 1e-9; // for the arms as they are: the crosses are turned alike
+
+// Along the arms d1 of the crosses: how much they are the directions of family 1 (+1) and not 2 (-1), at every
+// vertex. Where nothing tells, as around it; across an odd number of quarter turns the sign changes.
+Eigen::VectorXd
+familyOfArms(const Scaffold& scaffold, const CrossField& field, const CurvatureField& curvature)
+{
+	const TriangleMesh&                 mesh    = scaffold.mesh;
+	const Index                         n       = mesh.vertexCount();
+	const Eigen::VectorXd               known   = directionGuide(scaffold, curvature).weights;
+	const Eigen::VectorXd               weights = mesh.cotangentWeights();
+	Eigen::VectorXd                     sums    = known.array() + unknownWeight;
+	Eigen::VectorXd                     right   = Eigen::VectorXd::Constant(n, unknownWeight);
+	std::vector<Eigen::Triplet<double>> entries;
+	entries.reserve(n + mesh.edgeCount());
+	for (Index e = 0; e < mesh.edgeCount(); ++e) {
+		const TriangleMesh::Edge& edge = mesh.edges()[e];
+		sums[edge.from] += weights[e];
+		sums[edge.to] += weights[e];
+		entries.emplace_back(edge.to, edge.from, field.turns[e] & 1 ? weights[e] : -weights[e]);
+	}
+	for (Index v = 0; v < n; ++v) {
+		entries.emplace_back(v, v, sums[v]);
+		if (known[v] > 0.0) {
+			const double cosine = field.d1.col(v).dot(curvature.d1.col(scaffold.source[v]));
+			right[v] += known[v] * (2.0 * cosine * cosine - 1.0);
+		}
+	}
+	Eigen::SparseMatrix<double> matrix(n, n);
+	matrix.setFromTriplets(entries.begin(), entries.end());
+	return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>(matrix).solve(right);
+}
+
+// In the triangle's own frame, that of corner 0, so that chords that cross there are of different families.
+int familyOf(
+	const SurfaceCurves::Chord& chord,
+	const SurfaceCurves&        curves,
+	const TriangleMesh&         mesh,
+	const CrossField&           field,
+	const Eigen::VectorXd&      arms)
+{
+	const Index t = chord.triangle;
+	if (field.index[t] & 1) // one family goes on as the other
+		return 0;
+	const std::array<int, 3> turns = cornerTurns(mesh, field, t);
+	double                   first = 0.0; // how much arm d1 of corner 0 is of family 1
+	int                      family = curves.points[chord.a.edge][chord.a.point].family;
+	for (int c = 0; c < 3; ++c) {
+		const Index v = mesh.triangles()[t][c];
+		first += turns[c] & 1 ? -arms[v] : arms[v];
+		if (v == mesh.edges()[chord.a.edge].from)
+			family = (family + turns[c]) & 1;
+	}
+	return (family == 1) == (first >= 0.0) ? 1 : 2; // where phase 0 is whole, a line runs along d2
+}
+
 // Edge points as nodes, numbered edge by edge; each is joined to at most one other per triangle.
-struct Chains {
-	std::vector<std::vector<Index>> nodes;
-	std::vector<char>               closed;
+struct Link {
+	Index to;
+	int   family; // 0: unknown
+};
+struct Chain {
+	std::vector<Index> nodes;
+	std::vector<int>   family; // of the links between nodes, and of a closed chain from its last node to its first
+	bool               closed = false;
 };
 
-Chains chainsOf(const std::vector<std::vector<Index>>& joined)
+std::vector<Chain> chainsOf(const std::vector<std::vector<Link>>& joined)
 {
-	Chains            chains;
-	std::vector<char> visited(joined.size(), 0);
-	const auto        follow = [&](Index start, bool closed) {
-		std::vector<Index> chain;
+	std::vector<Chain> chains;
+	std::vector<char>  visited(joined.size(), 0);
+	const auto         follow = [&](Index start, bool closed) {
+		Chain chain;
+		chain.closed = closed;
 		for (Index at = start; at >= 0;) {
 			visited[at] = 1;
-			chain.push_back(at);
+			chain.nodes.push_back(at);
 			Index next = -1;
-			for (const Index n : joined[at])
-				if (!visited[n] && next < 0)
-					next = n;
+			for (const Link& link : joined[at])
+				if (!visited[link.to] && next < 0) {
+					next = link.to;
+					chain.family.push_back(link.family);
+				}
 			at = next;
 		}
-		chains.nodes.push_back(std::move(chain));
-		chains.closed.push_back(closed);
+		if (closed) // the first link was taken from the front
+			chain.family.push_back(joined[start].back().family);
+		chains.push_back(std::move(chain));
 	};
 	const auto count = static_cast<Index>(joined.size());
 	for (const std::size_t degree : {1, 2})
@@ -40,6 +109,40 @@ Chains chainsOf(const std::vector<std::vector<Index>>& joined)
 			if (!visited[n] && joined[n].size() == degree)
 				follow(n, degree == 2);
 	return chains;
+}
+
+// Links of unknown family take that of the link before, the first ones that of the link behind.
+void completeFamilies(std::vector<int>& family)
+{
+	const auto known = std::find_if(family.begin(), family.end(), [](int f) { return f != 0; });
+	int        last  = known == family.end() ? 1 : *known;
+	for (int& f : family)
+		last = f = f != 0 ? f : last;
+}
+
+// Cut where the family changes.
+std::vector<Chain> cut(Chain chain)
+{
+	completeFamilies(chain.family);
+	const auto change = std::adjacent_find(chain.family.begin(), chain.family.end(), std::not_equal_to<int>());
+	if (change == chain.family.end())
+		return {std::move(chain)};
+	if (chain.closed) {
+		const auto start = change - chain.family.begin() + 1;
+		std::rotate(chain.nodes.begin(), chain.nodes.begin() + start, chain.nodes.end());
+		std::rotate(chain.family.begin(), chain.family.begin() + start, chain.family.end());
+		chain.nodes.push_back(chain.nodes.front());
+	}
+	std::vector<Chain> parts;
+	for (std::size_t k = 0; k < chain.family.size(); ++k) {
+		if (k == 0 || chain.family[k] != chain.family[k - 1]) {
+			parts.emplace_back();
+			parts.back().nodes.push_back(chain.nodes[k]);
+		}
+		parts.back().nodes.push_back(chain.nodes[k + 1]);
+		parts.back().family.push_back(chain.family[k]);
+	}
+	return parts;
 }
 
 } // namespace
@@ -55,11 +158,13 @@ LineNetwork linesOf(
 	std::vector<Index>  first(mesh.edgeCount() + 1, 0);
 	for (Index e = 0; e < mesh.edgeCount(); ++e)
 		first[e + 1] = first[e] + static_cast<Index>(curves.points[e].size());
-	std::vector<std::vector<Index>> joined(first.back());
+	const Eigen::VectorXd          arms = familyOfArms(scaffold, field, curvature);
+	std::vector<std::vector<Link>> joined(first.back());
 	for (const SurfaceCurves::Chord& chord : curves.chords) {
 		const Index a = first[chord.a.edge] + chord.a.point, b = first[chord.b.edge] + chord.b.point;
-		joined[a].push_back(b);
-		joined[b].push_back(a);
+		const int   family = familyOf(chord, curves, mesh, field, arms);
+		joined[a].push_back({b, family});
+		joined[b].push_back({a, family});
 	}
 	std::vector<Index>         edgeOf(joined.size());
 	std::vector<SurfaceSample> samples(joined.size());
@@ -81,36 +186,36 @@ LineNetwork linesOf(
 		return field.index[edge.left] != 0 || field.index[edge.right] != 0 ? LineEnd::Umbilic : LineEnd::Line;
 	};
 
-	LineNetwork  lines;
-	const Chains chains = chainsOf(joined);
-	lines.vertices.resize(3, joined.size());
-	lines.normals.resize(3, joined.size());
-	lines.curvature.resize(joined.size());
+	std::vector<Chain> chains;
+	for (const Chain& whole : chainsOf(joined))
+		for (Chain& part : cut(whole))
+			chains.push_back(std::move(part));
+	Index count = 0;
+	for (const Chain& chain : chains)
+		count += static_cast<Index>(chain.nodes.size());
+
+	LineNetwork lines;
+	lines.vertices.resize(3, count);
+	lines.normals.resize(3, count);
+	lines.curvature.resize(count);
 	Index written = 0;
-	for (std::size_t l = 0; l < chains.nodes.size(); ++l) {
-		const std::vector<Index>& nodes = chains.nodes[l];
-		double                    vote  = 0.0;
-		for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
-			const SurfaceSample& here = samples[nodes[k]];
-			const Vector3d       step = samples[nodes[k + 1]].position - here.position;
-			vote += std::abs(step.dot(here.d1)) - std::abs(step.dot(here.d2));
-		}
-		const int family = vote >= 0.0 ? 1 : 2;
-		for (const Index n : nodes) {
+	for (const Chain& chain : chains) {
+		const int family = chain.family.front();
+		for (const Index n : chain.nodes) {
 			lines.vertices.col(written) = samples[n].position;
 			lines.normals.col(written)  = samples[n].normal;
 			lines.curvature[written++]  = family == 1 ? samples[n].k1 : samples[n].k2;
 		}
-		const bool closed = chains.closed[l];
+		const auto end = [&](Index node) {
+			if (chain.closed)
+				return LineEnd::None;
+			return joined[node].size() == 2 ? LineEnd::Umbilic : endAt(node);
+		};
 		lines.offsets.push_back(written);
 		lines.family.push_back(family);
-		lines.closed.push_back(closed);
-		lines.ends.push_back(
-			{closed ? LineEnd::None : endAt(nodes.front()), closed ? LineEnd::None : endAt(nodes.back())});
+		lines.closed.push_back(chain.closed);
+		lines.ends.push_back({end(chain.nodes.front()), end(chain.nodes.back())});
 	}
-	lines.vertices.conservativeResize(3, written);
-	lines.normals.conservativeResize(3, written);
-	lines.curvature.conservativeResize(written);
 	return lines;
 }
 

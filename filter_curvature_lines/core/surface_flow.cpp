@@ -17,10 +17,12 @@ constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
 constexpr double StartStep       = 0.25;        // at least, of the local spacing: see SurfaceFlow()
 constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
 constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of an umbilical region
-constexpr double CloudReach      = 1.5;         // local spacings from the closest point
-constexpr double VoidWidth       = 2.5; // local spacings that gaps between points of a random cloud may have
+constexpr double CloudReach      = 1.5; // local spacings from the closest point: within the cloud, or in a void of it
+constexpr double VoidReach       = 2.5; // local spacings from the closest point that even a void does not have
+constexpr double VoidWidths[]    = {2.5, 3.5}; // local spacings from within a void to behind it
 constexpr double VoidSlack       = 1.5; // local spacings to the closest point beyond one
 constexpr double CreaseCosine    = 0.8; // normals of points next to each other
+constexpr double CreaseReach     = 2.5; // local spacings that those are apart at most
 
 // The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families apart.
 std::vector<char> swappedRegions(
@@ -150,23 +152,30 @@ bool SurfaceFlow::leftCloud(const FlowPoint& point) const
 {
 	const double distance = (point.position - m_cloud.positions.col(point.cell)).norm();
 	const double local    = m_minimum.spacing[point.cell];
-	if (distance > CloudReach * local)
+	if (distance > VoidReach * local)
 		return true;
 	const double aside = point.inwards.norm();
-	if (aside < rimOffset || point.inwards.dot(point.direction) > 0.0)
+	if (distance < CloudReach * local && (aside < rimOffset || point.inwards.dot(point.direction) > 0.0))
 		return false;
-	// All points lie behind. At a rim there are none beyond, either.
-	const Vector3d beyond = point.position - VoidWidth * local / aside * point.inwards;
-	const Index    next   = m_cells.locate(beyond, point.cell);
-	const double   around = VoidSlack * std::max(local, m_minimum.spacing[next]);
-	return (beyond - m_cells.site(next)).norm() > around ||
-		   m_cloud.normals.col(next).dot(point.normal) < SharpTurnCosine;
+	if (aside == 0.0)
+		return true;
+	// All points lie behind. At a rim there are none beyond, either; a void has some on its other side. Among ten
+	// thousand random points one or two voids are as wide as that.
+	for (const double width : VoidWidths) {
+		const Vector3d beyond = point.position - width * local / aside * point.inwards;
+		const Index    next   = m_cells.locate(beyond, point.cell);
+		const double   around = VoidSlack * std::max(local, m_minimum.spacing[next]);
+		if ((beyond - m_cells.site(next)).norm() < around &&
+			m_cloud.normals.col(next).dot(point.normal) > SharpTurnCosine)
+			return false;
+	}
+	return true;
 }
 
 bool SurfaceFlow::isCrease(Index cell) const
 {
 	for (Index j : m_cells.neighbors(cell)) {
-		const bool near = (m_cells.site(j) - m_cells.site(cell)).norm() < VoidWidth * m_minimum.spacing[cell];
+		const bool near = (m_cells.site(j) - m_cells.site(cell)).norm() < CreaseReach * m_minimum.spacing[cell];
 		const double cosine = m_cloud.normals.col(j).dot(m_cloud.normals.col(cell));
 		if (near && cosine < CreaseCosine && cosine > -SharpTurnCosine) // not the other side of a sheet
 			return true;

@@ -478,6 +478,21 @@ TEST(LineTracing, NoneEndsAtARimOfATorus)
 	EXPECT_LE(edges, all / 50);
 }
 
+// Random points leave voids of two spacings and more; the surface goes on behind them.
+TEST(LineTracing, NoVoidIsTakenForARim)
+{
+	for (const std::uint64_t seed : {3, 5, 8}) {
+		const test::ExactCloud exact = test::exactCloud(request("torus", 10000, seed));
+		LineTracingOptions     options;
+		options.minSpacing = options.maxSpacing = 0.05;
+		Index rims                              = 0;
+		for (const auto& both : trace(exact, options).ends)
+			for (const LineEnd end : both)
+				rims += end == LineEnd::Rim;
+		EXPECT_EQ(rims, 0) << "seed " << seed;
+	}
+}
+
 TEST(LineTracing, ArcLengthsStartAnewWithEveryLine)
 {
 	LineNetwork lines;

@@ -102,6 +102,34 @@ TEST(PositionFieldMesh, OpenSurfacesKeepOneLoopPerRim)
 	expectManifold(meshOf(test::exactCloud(request("plane", 3000)), 300), 1, 1);
 }
 
+// Its umbilics are two cones each, around which the families change places: curves that run past them have to be cut.
+TEST(PositionFieldMesh, LinesOfAnEllipsoidKeepTheirFamily)
+{
+	const test::ExactCloud   exact = test::exactCloud(request("ellipsoid", 6000));
+	PositionFieldMeshOptions options;
+	options.targetVertices = 800;
+	options.keepLines      = true;
+	const LineNetwork               lines   = buildPositionFieldMesh(exact.cloud, exact.field, {}, options).lines;
+	const samples::AnalyticSurface& surface = samples::surface("ellipsoid");
+	const double                    largest = (exact.field.k1 - exact.field.k2).maxCoeff();
+	Index                           judged = 0, wrong = 0, closed = 0;
+	for (Index l = 0; l < lines.lines(); ++l) {
+		closed += lines.closed[l];
+		for (Index v = lines.offsets[l]; v + 1 < lines.offsets[l + 1]; ++v) {
+			const Eigen::Vector3d       a = lines.vertices.col(v), along = lines.vertices.col(v + 1) - a;
+			const samples::SurfaceFrame frame = surface.frame(surface.project(a + 0.5 * along));
+			if (frame.k1 - frame.k2 < 0.1 * largest)
+				continue;
+			const double first = std::abs(along.dot(frame.d1)), second = std::abs(along.dot(frame.d2));
+			++judged;
+			wrong += (lines.family[l] == 1) != (first > second);
+		}
+	}
+	EXPECT_GT(judged, 1000);
+	EXPECT_LT(wrong, 0.002 * judged); // 3 % when every curve was of one family
+	EXPECT_GT(closed, lines.lines() / 3);
+}
+
 TEST(PositionFieldMesh, IsTheSameForAnyNumberOfThreads)
 {
 	const test::ExactCloud exact   = test::exactCloud(request("ellipsoid", 2500));

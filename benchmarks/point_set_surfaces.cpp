@@ -1,5 +1,5 @@
-// Both point-set surfaces of a cloud ray-traced by turns: seconds of every run, and how far the images agree.
-// For ray_tracing.py, which writes the cloud and reads the JSON object printed.
+// Both point-set surfaces of a cloud ray-traced by turns: seconds of every run, and how far the images agree;
+// the projection that no filter offers. For ray_tracing.py, which writes the cloud and reads the JSON object printed.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ void printList(const char* name, const std::vector<double>& values)
 	std::printf("], ");
 }
 
-int compare(const char* file, int width, int height, int runs)
+PreparedCloud readCloud(const char* file)
 {
 	const CloudFile  given(file);
 	const auto       n = static_cast<Eigen::Index>(given.points.size());
@@ -39,7 +39,28 @@ int compare(const char* file, int width, int height, int runs)
 			positions(c, i) = given.points[i][c];
 			normals(c, i)   = given.points[i][3 + c];
 		}
-	const PreparedCloud             prepared = inSpatialOrder(prepareCloud(positions, normals));
+	return inSpatialOrder(prepareCloud(positions, normals));
+}
+
+// The points of a cloud on its own moving-least-squares surface, in no order.
+int project(const char* file, const char* output)
+{
+	const PreparedCloud             prepared = readCloud(file);
+	const NeighborSearch            search(prepared.cloud.positions);
+	const MinimumNeighborhoods      minimum = minimumNeighborhoods(prepared.cloud, search);
+	const MovingLeastSquaresSurface surface({prepared.cloud, search, minimum.spacing});
+	const Eigen::Matrix3Xd          moved = projectPoints(surface, prepared.cloud.positions).positions;
+	std::vector<double>             coordinates;
+	for (Eigen::Index i = 0; i < moved.cols(); ++i)
+		for (const double x : prepared.toModel(moved.col(i)))
+			coordinates.push_back(x);
+	writeAll(output, coordinates);
+	return 0;
+}
+
+int compare(const char* file, int width, int height, int runs)
+{
+	const PreparedCloud             prepared = readCloud(file);
 	const NeighborSearch            search(prepared.cloud.positions);
 	const MinimumNeighborhoods      minimum = minimumNeighborhoods(prepared.cloud, search);
 	const ControlPoints             control{prepared.cloud, search, minimum.spacing};
@@ -106,9 +127,11 @@ int main(int count, char** words)
 		const std::string what = count > 1 ? words[1] : "";
 		if (what == "compare" && count == 6)
 			return compare(words[2], std::atoi(words[3]), std::atoi(words[4]), std::atoi(words[5]));
+		if (what == "project" && count == 4)
+			return project(words[2], words[3]);
 		if (what == "peak" && count == 4)
 			return printPeak(std::atof(words[2]), Index(std::atoi(words[3])));
-		std::fprintf(stderr, "usage: point_set_surfaces compare CLOUD WIDTH HEIGHT RUNS | peak H EXPONENT\n");
+		std::fprintf(stderr, "usage: point_set_surfaces compare CLOUD WIDTH HEIGHT RUNS | project CLOUD OUTPUT | peak H EXPONENT\n");
 		return 2;
 	}
 	catch (const std::exception& error) {

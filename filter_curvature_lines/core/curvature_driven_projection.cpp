@@ -26,7 +26,8 @@ CurvatureDrivenSurface::CurvatureDrivenSurface(
 	const ControlPoints& control, const CurvatureDrivenOptions& options) :
 		PointSetSurface(
 			control,
-			std::max(gaussianReach * options.bandwidth, curvatureReach * options.curvatureBandwidth)),
+			std::max(gaussianReach * options.bandwidth, curvatureReach * options.curvatureBandwidth),
+			gaussianReach * options.bandwidth),
 		m_options(options)
 {
 }

@@ -14,7 +14,8 @@ struct CurvatureDrivenOptions {
 		Cutoff,  // its height; none from neighbours towards which the surface bends too much (T06 eq. 17)
 		Rational // its height, the less the more the surface bends towards it (T06 eq. 18)
 	};
-	double    bandwidth          = 2.0; // of the Gaussian, in local spacings
+	// Of the Gaussian, in local spacings: as little noise is left as moving least squares leave with 2.
+	double    bandwidth          = 1.6;
 	Diffusion diffusion          = Diffusion::Hermite;
 	Index     diffusionSteps     = 10;
 	double    bend               = 0.5; // lambda of T06 eqs. 17 and 18, in 1 / local spacing (unpublished)

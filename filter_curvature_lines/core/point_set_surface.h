@@ -39,15 +39,15 @@ class PointSetSurface {
 public:
 	virtual ~PointSetSurface() = default;
 
-	// The control points that define the surface near a place; false where there is no surface.
+	// The control points for near() at a place; false where there is no surface.
 	bool gather(const Eigen::Vector3d& place, ControlNeighborhood& around) const
 	{
-		return around.gather(m_control, place, m_reach);
+		return around.gather(m_control, place, m_nearReach);
 	}
-	// Those that define it up to `margin` local spacings from a control point.
+	// Those for follow() up to `margin` local spacings from a control point.
 	bool gather(Index point, double margin, ControlNeighborhood& around) const
 	{
-		return around.gather(m_control, point, m_reach + margin);
+		return around.gather(m_control, point, m_followReach + margin);
 	}
 	// Nothing where the points around do not tell.
 	virtual std::optional<LocalQuadric> near(
@@ -64,11 +64,15 @@ public:
 		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const = 0;
 
 protected:
-	PointSetSurface(const ControlPoints& control, double reach) : m_control(control), m_reach(reach) {}
+	// How far around a place near() and follow() look, in local spacings.
+	PointSetSurface(const ControlPoints& control, double nearReach, double followReach) :
+			m_control(control), m_nearReach(nearReach), m_followReach(followReach)
+	{
+	}
 
 private:
 	ControlPoints m_control;
-	double        m_reach; // local spacings
+	double        m_nearReach, m_followReach;
 };
 
 struct ProjectionOptions {

@@ -18,9 +18,9 @@ constexpr double largestSphere  = 3.0;  // spacings: lonely points enclose no su
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
 constexpr double margin         = 0.5;  // spacings: most places are that close to the point of their sphere
 constexpr double strayed        = 1.8;  // radii: so far from a sphere's centre others know the surface better
-constexpr double behind         = 5.0;  // radii: so close behind a front that was missed, a back is an artefact
+constexpr double behind         = 5.0;  // radii: a back so close to a front is an artefact
 // Cosines between the normals of a hit and of its sphere's point: another sphere has to confirm it; no hit.
-constexpr double turned = 0.9, opposed = 0.3;
+constexpr double turned = 0.97, opposed = 0.3;
 constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
@@ -103,6 +103,18 @@ double stepToQuadric(
 	// The smaller root, without cancellation.
 	const double large = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
 	return large != 0.0 ? c / large : 0.0;
+}
+
+// At thin rims a ray may slip past the rounded front and meet the back, from inside: whether there is a front
+// about that the ray should have met.
+bool besideFront(
+	const Ray& ray, double depth, const std::vector<Passage>& passages, const std::vector<Sphere>& spheres)
+{
+	return std::any_of(passages.begin(), passages.end(), [&](const Passage& passage) {
+		const Sphere& sphere = spheres[passage.sphere];
+		return sphere.normal.dot(ray.direction) < 0.0 &&
+			std::abs(passage.closest - depth) < behind * sphere.radius;
+	});
 }
 
 } // namespace
@@ -272,7 +284,6 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
 		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
 	});
-	double slipped = 0.0; // no back before
 	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
 		if (passages[first].done)
 			continue;
@@ -289,11 +300,8 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 			if (nearest != passages[chosen].sphere)
 				found = approach(ray, nearest, found.hit.depth, memory);
 		}
-		// At thin rims a ray may slip past the rounded front and meet the back, from inside.
-		const Sphere& sphere = m_spheres->all[passages[chosen].sphere];
-		if (!found.hit.exists() && sphere.normal.dot(ray.direction) < 0.0)
-			slipped = std::max(slipped, passages[chosen].closest + behind * sphere.radius);
-		if (found.hit.depth < slipped && found.hit.normal.dot(ray.direction) > 0.0)
+		if (found.hit.exists() && found.hit.normal.dot(ray.direction) > 0.0 &&
+			besideFront(ray, found.hit.depth, passages, m_spheres->all))
 			found.hit = {};
 		if (found.hit.depth < best.depth)
 			best = found.hit;

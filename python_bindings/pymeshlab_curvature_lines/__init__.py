@@ -13,7 +13,7 @@ from __future__ import annotations
 from importlib.metadata import version
 from pathlib import Path
 
-__all__ = ["__version__", "filters", "plugin_path"]
+__all__ = ["MeshSet", "__version__", "filters", "plugin_path"]
 __version__: str = version("pymeshlab-curvature-lines")
 
 _HOST = "2025.7"
@@ -42,7 +42,7 @@ def filters() -> dict[str, str]:
     return dict(_FILTERS)
 
 
-def _load() -> None:
+def _load() -> type:
     # Before the import: a plugin in a host of another version would crash, not complain.
     host = version("pymeshlab")
     if host != _HOST and not host.startswith(_HOST + "."):
@@ -59,6 +59,8 @@ def _load() -> None:
         method = pymeshlab.bind_function(name)
         method.__doc__ = description
         setattr(pymeshlab.MeshSet, name, method)
+    return pymeshlab.MeshSet
 
 
-_load()
+# PyMeshLab's own class, under a name that __init__.pyi can give types to.
+MeshSet = _load()

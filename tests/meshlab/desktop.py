@@ -150,8 +150,9 @@ class Desktop:
         os.environ["DISPLAY"] = DISPLAY
         wait_for("the X server", lambda: xdotool("getdisplaygeometry"))
         self.start("openbox")
-        os.environ["QT_LINUX_ACCESSIBILITY_ALWAYS_ON"] = "1"
-        # Qt looks for the bus once, when it starts, and must find it then.
+        # Told of the screen, the accessibility bus writes its address there, where Qt finds it before the first window.
+        # By messages alone Qt gets it later, after the only time it tries to use it.
+        subprocess.run(["dbus-update-activation-environment", "DISPLAY"], check=True)
         ask = "dbus-send --session --print-reply --dest=org.a11y.Bus /org/a11y/bus org.a11y.Bus.GetAddress"
         subprocess.run(ask.split(), check=True, stdout=subprocess.DEVNULL)
         self.start("/usr/libexec/at-spi2-registryd")

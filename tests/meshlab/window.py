@@ -18,15 +18,9 @@ class MeshLab:
     def __init__(self, desktop: Desktop, log: Path, *files: Path):
         self.desktop = desktop
         self.printed = log
-        # Sometimes Qt does not get through to the accessibility bus, and does not try again.
-        for _ in range(15):
-            self.process = desktop.start("meshlab", *map(str, files), log=log)
-            wait_for("the files to be opened", lambda: "All files opened" in log.read_text(errors="replace"), 60)
-            time.sleep(1)
-            if accessible_programs():
-                break
-            print("MeshLab is not accessible, another try")
-            desktop.stop(self.process)
+        self.process = desktop.start("meshlab", *map(str, files), log=log)
+        wait_for("the files to be opened", lambda: "All files opened" in log.read_text(errors="replace"), 60)
+        wait_for("MeshLab to be accessible", accessible_programs)
         self.application = wait_for("MeshLab", self._application)
         self.window = wait_for("its window", lambda: self._frame(r"MeshLab 20.*\[Project"))
         self.bar = self.window.find("progress bar").box

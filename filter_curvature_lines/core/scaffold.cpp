@@ -35,6 +35,8 @@ constexpr double creaseStep     = 0.93;
 constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
 constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
 constexpr int    attempts       = 3;
+constexpr int    otherTries       = 4;
+constexpr double otherDistance    = 0.05;
 constexpr double shortCrease      = 10.0; // of the distance of vertices
 constexpr Index  rimFlaws       = 5;       // a rim or a handle counts as so many defects
 constexpr double toleratedDefects = 0.002; // per vertex
@@ -416,6 +418,14 @@ Scaffold buildScaffold(
 
 	const double distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
 	Scaffold     best     = bestThinning(sample, order, creases, distance, cell, options, progress);
+	// Whether the front crosses a crease is a matter of chance: other points, another try.
+	for (int k = 1; k <= otherTries && best.lostCreaseEdges > 0; ++k) {
+		const double other = (1.0 + k * otherDistance) * distance;
+		Scaffold     next =
+			attempt(chooseSites(sample, order, creases, other, options), other, cell, options);
+		if (flawsOf(next) < flawsOf(best))
+			best = std::move(next);
+	}
 	// The front can stumble over creases that are none, as between wrinkles; without them it need not.
 	std::vector<FeatureLine> kept = creases;
 	for (const double least : {shortCrease * distance, double(INFINITY)}) {

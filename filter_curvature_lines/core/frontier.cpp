@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -20,7 +21,6 @@ using Eigen::Vector3d;
 // Of the likelihood, wide at first: it climbs from inside to where the points end, and strays beyond a gap do not
 // pull it on.
 constexpr double blurs[]         = {0.7, 0.35, 0.2};
-constexpr double leastBlur       = 0.2;
 constexpr double narrowestWindow = 20.0;
 constexpr double widestWindow    = 60.0;
 
@@ -38,9 +38,9 @@ constexpr double certain  = 8.0; // blurs inside: the density is full
 
 // log(Phi(z) + strays) and its derivatives, those of the logarithm as if the point's being a stray were known, by
 // how probable it is that it is none.
-struct LogNormal {
+struct PointTerm {
 	double value = 0.0, first = 0.0, second = 0.0, third = 0.0;
-	explicit LogNormal(double z)
+	explicit PointTerm(double z)
 	{
 		if (z > certain)
 			return;
@@ -67,7 +67,7 @@ struct Likelihood {
 	{
 		double sum = -area.dot(c);
 		for (Index i = 0; i < x.size(); ++i)
-			sum += LogNormal((basis.col(i).dot(c) - x[i]) / blur).value;
+			sum += PointTerm((basis.col(i).dot(c) - x[i]) / blur).value;
 		return sum;
 	}
 
@@ -78,7 +78,7 @@ struct Likelihood {
 			Vector3d gradient = -area;
 			for (Index i = 0; i < x.size(); ++i)
 				gradient +=
-					LogNormal((basis.col(i).dot(c) - x[i]) / blur).first / blur * basis.col(i);
+					PointTerm((basis.col(i).dot(c) - x[i]) / blur).first / blur * basis.col(i);
 			const Vector3d ascent = information(c).ldlt().solve(gradient);
 			// Bounded, because far inside, where all points are strays to it, the likelihood grows again.
 			double share = std::min(1.0, longestStep * blur / ascent.cwiseAbs().maxCoeff());
@@ -100,7 +100,7 @@ struct Likelihood {
 	{
 		Matrix3d sum = Matrix3d::Zero();
 		for (Index i = 0; i < x.size(); ++i)
-			sum -= LogNormal((basis.col(i).dot(c) - x[i]) / blur).second / (blur * blur) *
+			sum -= PointTerm((basis.col(i).dot(c) - x[i]) / blur).second / (blur * blur) *
 				   basis.col(i) * basis.col(i).transpose();
 		return sum + Matrix3d::Identity() * std::max(1e-6 * sum.trace(), 1e-12);
 	}
@@ -110,7 +110,7 @@ struct Likelihood {
 	{
 		Vector3d sum = Vector3d::Zero();
 		for (Index i = 0; i < x.size(); ++i)
-			sum += LogNormal((basis.col(i).dot(c) - x[i]) / blur).third / (blur * blur * blur) *
+			sum += PointTerm((basis.col(i).dot(c) - x[i]) / blur).third / (blur * blur * blur) *
 				   basis.col(i).dot(covariance * basis.col(i)) * basis.col(i);
 		return 0.5 * covariance * sum;
 	}
@@ -144,9 +144,10 @@ fitWindow(const Eigen::Matrix2Xd& points, double begin, double end, double noise
 		likelihood.blur = std::hypot(noise, blur);
 		c               = likelihood.maximum(c);
 	}
+	const double   addedBlur  = *std::prev(std::end(blurs));
 	const Matrix3d covariance = likelihood.information(c).inverse();
 	c += likelihood.meanLessMode(c, covariance);
-	c[0] += blurBias * leastBlur * leastBlur / likelihood.blur;
+	c[0] += blurBias * addedBlur * addedBlur / likelihood.blur;
 	if (!c.allFinite())
 		return {};
 	return Frontier{c[0], c[1] / scale, std::sqrt(covariance(0, 0))};

@@ -17,7 +17,9 @@ constexpr double settled       = 1e-3; // spacings: what the plane moves at last
 
 MovingLeastSquaresSurface::MovingLeastSquaresSurface(
 	const ControlPoints& control, const MovingLeastSquaresOptions& options) :
-		PointSetSurface(control, gaussianReach * options.bandwidth, gaussianReach * options.bandwidth), m_options(options)
+		PointSetSurface(
+			control, gaussianReach * options.bandwidth, gaussianReach * options.bandwidth),
+		m_options(options)
 {
 }
 

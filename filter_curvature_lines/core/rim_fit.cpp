@@ -25,7 +25,7 @@ constexpr double bandDepth    = 3.0; // the density is that of the points from a
 constexpr double mostGap      = 2.0;
 constexpr double mostOffset   = 1.5;
 constexpr double mostCornerOffset = 4.0;
-constexpr double leastTurn        = 0.9; // of a corner: cosine
+constexpr double straight         = 0.9; // cosine of the turn of a corner that is none
 constexpr int    fitSteps         = 3;   // each sees sides and corners where the last put them
 
 // A vertex of a rim and the frame from which it looks at the end of the surface.
@@ -44,7 +44,7 @@ struct View {
 	Vector3d at(double s, double x) const { return origin + s * tangent + x * outward; }
 };
 
-// Part of a rim around its k-th vertex, up to corners and to where it has turned away.
+// Part of a rim around one vertex, up to corners and to where it has turned away.
 struct Reach {
 	Index behind = 0, ahead = 0; // vertices
 };
@@ -108,7 +108,22 @@ private:
 		for (Index j = 0; j < m_cloud.size(); ++j)
 			if (owner[j] >= 0)
 				m_beside[owner[j]].push_back(j);
+		m_inBand.assign(m_positions.cols(), 0);
+		for (const Place& place : m_places) {
+			const Rim& rim = m_rims[place.rim];
+			const View view(
+				position(rim, place.k),
+				position(rim, place.k + 1) - position(rim, place.k - 1),
+				m_normals.col(rim.at(place.k)));
+			for (const Index j : m_beside[rim.at(place.k)]) {
+				const double x = view.of(m_cloud.positions.col(j)).y();
+				m_inBand[rim.at(place.k)] += x < -gap() && x > -bandDepth * m_spacing;
+			}
+		}
 	}
+
+	// Of the band in which the density is measured from the rim: past what noise and voids do there.
+	double gap() const { return std::min(m_spacing + 2.0 * m_noise, mostGap * m_spacing); }
 
 	Index vertexAt(std::size_t i) const { return m_rims[m_places[i].rim].at(m_places[i].k); }
 
@@ -116,56 +131,44 @@ private:
 
 	Reach reachOf(const Rim& rim, Index k, const View& view) const
 	{
-		Reach       reach;
-		const Index most = std::min(longestReach, rim.size() / 4);
-		const auto  end  = [&](Index step) {
-            Index m = 0;
-            while (m < most) {
-                const Vector3d edge =
-                    position(rim, k + step * (m + 1)) - position(rim, k + step * m);
-                if (m > 0 && (rim.isCorner(k + step * m) ||
-                              step * edge.normalized().dot(view.tangent) < sameCourse))
-                    break;
-                ++m;
-            }
-            return m;
+		const Index most   = std::min(longestReach, rim.size() / 4);
+		const auto  extent = [&](Index step) {
+			Index m = 0;
+			while (m < most) {
+				const Index    here = k + step * m;
+				const Vector3d edge = position(rim, here + step) - position(rim, here);
+				const bool turned   = step * edge.normalized().dot(view.tangent) < sameCourse;
+				if (m > 0 && (rim.isCorner(here) || turned))
+					break;
+				++m;
+			}
+			return m;
 		};
-		reach.behind = end(-1);
-		reach.ahead  = end(1);
-		return reach;
+		return {extent(-1), extent(1)};
 	}
 
 	// Where the surface ends as seen from a vertex.
-	std::optional<Frontier> end(const Rim& rim, Index k, const View& view, const Reach& reach) const
+	std::optional<Frontier>
+	frontierOf(const Rim& rim, Index k, const View& view, const Reach& reach) const
 	{
 		std::vector<Eigen::Vector2d> seen;
-		double                       inside = 0.0, length = 0.0;
-		const double                 gap = std::min(m_spacing + 2.0 * m_noise, mostGap * m_spacing);
+		double                       inBand = 0.0, length = 0.0;
 		for (Index m = k - reach.behind; m <= k + reach.ahead; ++m) {
-			const View own(
-				position(rim, m),
-				position(rim, m + 1) - position(rim, m - 1),
-				m_normals.col(rim.at(m)));
-			const bool counted = m > k - reach.behind && m < k + reach.ahead;
-			if (counted)
-				length += 0.5 * (position(rim, m + 1) - position(rim, m)).norm() +
-						  0.5 * (position(rim, m) - position(rim, m - 1)).norm();
-			for (const Index j : m_beside[rim.at(m)]) {
-				const Vector3d p = m_cloud.positions.col(j);
-				seen.push_back(view.of(p));
-				const double x = own.of(p).y();
-				inside += counted && x < -gap && x > -bandDepth * m_spacing;
-			}
+			for (const Index j : m_beside[rim.at(m)])
+				seen.push_back(view.of(m_cloud.positions.col(j)));
+			if (m == k - reach.behind || m == k + reach.ahead) // only half beside the part
+				continue;
+			inBand += m_inBand[rim.at(m)];
+			length += 0.5 * (position(rim, m + 1) - position(rim, m)).norm() +
+					  0.5 * (position(rim, m) - position(rim, m - 1)).norm();
 		}
-		const double density = inside / (length * (bandDepth * m_spacing - gap));
+		const double density = inBand / (length * (bandDepth * m_spacing - gap()));
 		if (!(density > 0.0) || !std::isfinite(density))
 			return {};
-		const double a = view.of(position(rim, k - reach.behind)).x(),
-					 b = view.of(position(rim, k + reach.ahead)).x();
 		return fitFrontier(
 			Eigen::Map<const Eigen::Matrix2Xd>(seen[0].data(), 2, seen.size()),
-			a,
-			b,
+			view.of(position(rim, k - reach.behind)).x(),
+			view.of(position(rim, k + reach.ahead)).x(),
 			density,
 			m_noise);
 	}
@@ -175,7 +178,7 @@ private:
 		const View view(position(rim, k), rim.tangent(k, m_positions), m_normals.col(rim.at(k)));
 		if (!view.tangent.allFinite())
 			return view.origin;
-		const auto   frontier = end(rim, k, view, reachOf(rim, k, view));
+		const auto   frontier = frontierOf(rim, k, view, reachOf(rim, k, view));
 		const double most     = mostOffset * m_spacing;
 		return view.at(0.0, frontier ? std::clamp(frontier->value, -most, most) : 0.0);
 	}
@@ -196,16 +199,16 @@ private:
 				return start;
 			Reach reach                              = reachOf(rim, k, view);
 			(side == 0 ? reach.ahead : reach.behind) = 0;
-			const auto frontier                      = end(rim, k, view, reach);
+			const auto frontier                      = frontierOf(rim, k, view, reach);
 			if (!frontier)
 				return start;
 			p[side] = view.at(0.0, frontier->value);
 			d[side] = (view.tangent + frontier->slope * view.outward).normalized();
 		}
 		const double cosine = d[0].dot(d[1]), det = 1.0 - cosine * cosine;
-		if (cosine > leastTurn)
+		if (cosine > straight)
 			return {};
-		if (!(det > 1.0 - leastTurn * leastTurn))
+		if (!(cosine > -straight))
 			return start;
 		const Vector3d w    = p[1] - p[0];
 		const double   s    = (w.dot(d[0]) - cosine * w.dot(d[1])) / det,
@@ -221,6 +224,7 @@ private:
 	Eigen::Matrix3Xd&               m_positions;
 	std::vector<Place>              m_places;
 	std::vector<std::vector<Index>> m_beside; // of every vertex: points of the cloud
+	std::vector<Index>              m_inBand; // how many of them tell the density
 };
 
 } // namespace

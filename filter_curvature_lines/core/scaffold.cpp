@@ -35,9 +35,9 @@ constexpr double creaseStep     = 0.93;
 constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
 constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
 constexpr int    attempts       = 3;
-constexpr int    otherTries       = 4;
-constexpr double otherDistance    = 0.05;
-constexpr double shortCrease      = 10.0; // of the distance of vertices
+constexpr int    otherTries    = 4;
+constexpr double otherDistance = 0.05; // thinning of each, over that of the one before
+constexpr double shortCrease   = 10.0; // of the distance of vertices
 constexpr Index  rimFlaws       = 5;       // a rim or a handle counts as so many defects
 constexpr double toleratedDefects = 0.002; // per vertex
 
@@ -359,32 +359,39 @@ std::vector<FeatureLine> longerThan(double least, const std::vector<FeatureLine>
 	return kept;
 }
 
-// The thinning with the fewest flaws.
-Scaffold bestThinning(
-	const PointSample&              sample,
-	const std::vector<Index>&       order,
-	const std::vector<FeatureLine>& creases,
-	double                          distance,
-	double                          cell,
-	const ScaffoldOptions&          options,
-	const Progress&                 progress)
-{
-	Scaffold best;
-	double   fewest = 0.0;
-	for (int k = 0; k < attempts; ++k, distance *= coarser) {
-		progress.report(double(k) / attempts);
-		Scaffold next = attempt(
+// What all attempts at one scaffold share.
+struct Attempts {
+	const PointSample&        sample;
+	const std::vector<Index>& order;
+	double                    cell;
+	const ScaffoldOptions&    options;
+
+	Scaffold at(double distance, const std::vector<FeatureLine>& creases) const
+	{
+		return attempt(
 			chooseSites(sample, order, creases, distance, options), distance, cell, options);
-		const double flaws = flawsOf(next);
-		if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
-			best   = std::move(next);
-			fewest = flaws;
-		}
-		if (best.defects + best.lostCreaseEdges <= toleratedDefects * best.mesh.vertexCount())
-			break;
 	}
-	return best;
-}
+
+	// From `distance` on coarser and coarser, until there are few defects: the one with the fewest flaws.
+	Scaffold coarserFrom(
+		double distance, const std::vector<FeatureLine>& creases, const Progress& progress) const
+	{
+		Scaffold best;
+		double   fewest = 0.0;
+		for (int k = 0; k < attempts; ++k, distance *= coarser) {
+			progress.report(double(k) / attempts);
+			Scaffold     next  = at(distance, creases);
+			const double flaws = flawsOf(next);
+			if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
+				best   = std::move(next);
+				fewest = flaws;
+			}
+			if (best.defects + best.lostCreaseEdges <= toleratedDefects * best.mesh.vertexCount())
+				break;
+		}
+		return best;
+	}
+};
 
 } // namespace
 
@@ -416,26 +423,30 @@ Scaffold buildScaffold(
 				 ? spacing / poissonSpacing * std::sqrt(cloud.size() / options.targetVertices)
 				 : 0.0;
 
-	const double distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
-	Scaffold     best     = bestThinning(sample, order, creases, distance, cell, options, progress);
+	const double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
+	const Attempts tries{sample, order, cell, options};
+	Scaffold       best =
+		tries.coarserFrom(distance, creases, progress.sub(0.0, 0.4, "Triangulating"));
 	// Whether the front crosses a crease is a matter of chance: other points, another try.
 	for (int k = 1; k <= otherTries && best.lostCreaseEdges > 0; ++k) {
-		const double other = (1.0 + k * otherDistance) * distance;
-		Scaffold     next =
-			attempt(chooseSites(sample, order, creases, other, options), other, cell, options);
+		progress.report(0.4 + 0.2 * k / otherTries);
+		Scaffold next = tries.at((1.0 + k * otherDistance) * distance, creases);
 		if (flawsOf(next) < flawsOf(best))
 			best = std::move(next);
 	}
 	// The front can stumble over creases that are none, as between wrinkles; without them it need not.
 	std::vector<FeatureLine> kept = creases;
+	double                   done = 0.6;
 	for (const double least : {shortCrease * distance, double(INFINITY)}) {
 		if (kept.empty() || topologicalFeatures(best) == 0)
 			break;
 		const std::size_t before = kept.size();
 		kept                     = longerThan(least, kept);
+		const Progress part      = progress.sub(done, done + 0.2, "Triangulating");
+		done += 0.2;
 		if (kept.size() == before)
 			continue;
-		Scaffold next = bestThinning(sample, order, kept, distance, cell, options, progress);
+		Scaffold next = tries.coarserFrom(distance, kept, part);
 		if (topologicalFeatures(next) < topologicalFeatures(best))
 			best = std::move(next);
 	}

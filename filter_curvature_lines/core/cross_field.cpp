@@ -23,6 +23,9 @@ constexpr double sureErrors = 3.0; // k1 - k2 below so many standard errors tell
 // is, the less, down to a third of a cell.
 constexpr double cellErrors = 15.0;
 constexpr double mostTrust  = 10.0;
+// Of a component. Where directions are known in less than one cell of the mesh, they are chance: four of 6316
+// points of a noisy sphere would bend the whole field, and 94 lines end in it instead of 3.
+constexpr double fewestCells = 1.0;
 // What errors leave out, such as corners nearby: a difference no estimate tells from flat, over the diagonal.
 constexpr double leastError = 0.02;
 constexpr double leastRatio =
@@ -233,14 +236,15 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 		field.d2.col(v) = field.normals.col(v).cross(field.d1.col(v));
 
 	const std::vector<Index> component = mesh.components();
-	std::vector<char>        guided(n, 0);
+	Eigen::VectorXd          known     = Eigen::VectorXd::Zero(n); // cells, per component
 	for (Index v = 0; v < n; ++v)
-		guided[component[v]] = guided[component[v]] || guide.weights[v] > 0.0;
+		known[component[v]] += guide.weights[v];
+	const auto guided = [&](Index v) { return known[component[v]] >= fewestCells; };
 	Eigen::VectorXcd z         = Eigen::VectorXcd::Zero(n);
 	bool             anyGuided = false, allGuided = true;
 	for (Index v = 0; v < n; ++v) {
-		anyGuided = anyGuided || guided[component[v]];
-		allGuided = allGuided && guided[component[v]];
+		anyGuided = anyGuided || guided(v);
+		allGuided = allGuided && guided(v);
 	}
 	if (anyGuided) {
 		const Solver solver(smoothness(mesh, field, guide.weights.array() + regularization));
@@ -249,7 +253,7 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 	if (!allGuided && n > 0) {
 		const Eigen::VectorXcd free = smoothest(mesh, field, component);
 		for (Index v = 0; v < n; ++v)
-			if (!guided[component[v]])
+			if (!guided(v))
 				z[v] = free[v];
 	}
 	for (Index v = 0; v < n; ++v)

@@ -21,7 +21,7 @@ constexpr double quarter    = 0.5 * double(EIGEN_PI);
 constexpr double sureErrors = 3.0; // k1 - k2 below so many standard errors tells no direction
 // A direction whose k1 - k2 is this many errors is smoothed over about a cell of the mesh; the more exact it
 // is, the less, down to a third of a cell.
-constexpr double cellErrors = 15.0;
+constexpr double cellErrors = 18.0;
 constexpr double mostTrust  = 10.0;
 // Of a component. Where directions are known in less than one cell of the mesh, they are chance: four of 6316
 // points of a noisy sphere would bend the whole field, and 94 lines end in it instead of 3.
@@ -205,7 +205,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 			continue;
 		const double ratio      = difference / size;
 		const double confidence = std::min(mostTrust, sure / cellErrors);
-		guide.weights[v]        = confidence * ratio * ratio * areas[v] / (cell * cell);
+		guide.weights[v]        = confidence * ratio * areas[v] / (cell * cell);
 	}
 
 	for (Index e = 0; e < mesh.edgeCount(); ++e)

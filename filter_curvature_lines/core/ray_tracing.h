@@ -64,9 +64,27 @@ public:
 
 private:
 	struct Spheres;
-	struct Approach;
-	Approach approach(const Ray& ray, Index point, double start, Memory& memory) const;
+	struct Passage;
+	struct Elevation; // of a place over the surface
+
 	const Memory::Slot& surfaceAt(Index point, Memory& memory) const;
+	void   findPassages(const Ray& ray, const Memory& memory, std::vector<Passage>& passages) const;
+	RayHit approach(const Ray& ray, const Passage& passage, Memory& memory) const;
+	RayHit march(
+		const Ray& ray, double end, const std::vector<Passage>& passages, Memory& memory) const;
+	RayHit bracketed(
+		const Ray&                  ray,
+		double                      low,
+		double                      high,
+		Elevation                   atLow,
+		Elevation                   atHigh,
+		const std::vector<Passage>& passages,
+		Memory&                     memory) const;
+	std::optional<Elevation> elevationAt(
+		const Ray& ray, double t, const std::vector<Passage>& passages, Memory& memory) const;
+	// As the neighbours of one control point know it.
+	std::optional<Elevation> elevationOver(Index point, const Eigen::Vector3d& place, Memory& memory) const;
+	bool besideFront(const Ray& ray, double depth, const std::vector<Passage>& passages) const;
 
 	const PointSetSurface&         m_surface;
 	ControlPoints                  m_control;

@@ -23,6 +23,7 @@ struct RayTracer::Passage {
 	bool   done;
 
 	double squaredDistance(double t) const { return (t - closest) * (t - closest) + aside; }
+	bool   encloses(double t) const { return std::abs(t - closest) < half; }
 };
 
 namespace {
@@ -189,7 +190,7 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 	return slot;
 }
 
-// Nothing unless the surface is met surely: near the sphere's point, on its side, away from other sheets.
+// Nothing unless the surface is met surely: on the side of the sphere's point, away from other sheets.
 RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memory) const
 {
 	const Sphere&       sphere = m_spheres->all[passage.sphere];
@@ -216,9 +217,9 @@ RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memor
 			return {};
 		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
 			const Vector3d normal = quadric.normalAt(place);
-			if (normal.dot(slot.around.side()) < turned || (place - sphere.center).norm() > sphere.radius)
-				return {};
-			return {t, place, normal};
+			if (normal.dot(slot.around.side()) > turned)
+				return {t, place, normal};
+			return {};
 		}
 		if (!m_surface.follow(slot.around, place, quadric))
 			return {};
@@ -246,25 +247,30 @@ std::optional<RayTracer::Elevation> RayTracer::elevationOver(
 	return Elevation{std::max(above, slot.around.pastEdge(place, normal)), normal, slot.around.spacing()};
 }
 
+const RayTracer::Passage& RayTracer::closestTo(double t, const std::vector<Passage>& passages)
+{
+	return *std::min_element(passages.begin(), passages.end(), [t](const Passage& a, const Passage& b) {
+		return a.squaredDistance(t) < b.squaredDistance(t);
+	});
+}
+
 // Blended from the closest control points: of two neighbours, one may know of a sheet that the other does not.
 std::optional<RayTracer::Elevation> RayTracer::elevationAt(
 	const Ray& ray, double t, const std::vector<Passage>& passages, Memory& memory) const
 {
 	const Vector3d place = ray.origin + t * ray.direction;
-	const auto closest = std::min_element(passages.begin(), passages.end(), [&](const Passage& a, const Passage& b) {
-		return a.squaredDistance(t) < b.squaredDistance(t);
-	});
-	const auto first = elevationOver(closest->sphere, place, memory);
+	const Passage& closest = closestTo(t, passages);
+	const auto     first   = elevationOver(closest.sphere, place, memory);
 	if (!first || std::abs(first->above) > far * first->spacing)
 		return first;
-	const double least = std::sqrt(closest->squaredDistance(t)), more = blend * m_control.spacing[closest->sphere];
+	const double least = std::sqrt(closest.squaredDistance(t)), more = blend * m_control.spacing[closest.sphere];
 	Elevation    sum   = *first;
 	double       total = 1.0;
-	for (auto other = passages.begin(); other != passages.end(); ++other) {
-		const double square = other->squaredDistance(t);
-		if (other == closest || square >= (least + more) * (least + more))
+	for (const Passage& other : passages) {
+		const double square = other.squaredDistance(t);
+		if (&other == &closest || square >= (least + more) * (least + more))
 			continue;
-		const auto   one   = elevationOver(other->sphere, place, memory);
+		const auto   one   = elevationOver(other.sphere, place, memory);
 		const double share = 1.0 - (std::sqrt(square) - least) / more, w = share * share;
 		if (!one)
 			continue;
@@ -417,7 +423,15 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 		for (std::size_t k = first; k < passages.size() && passages[k].start < last; ++k)
 			if (!passages[k].done && passages[k].off < passages[chosen].off)
 				chosen = k;
-		const RayHit hit = approach(ray, passages[chosen], memory);
+		RayHit hit = approach(ray, passages[chosen], memory);
+		if (hit.exists() && !passages[chosen].encloses(hit.depth)) {
+			// Another sphere knows the surface there better.
+			Passage closest = closestTo(hit.depth, passages);
+			closest.start   = hit.depth;
+			hit             = approach(ray, closest, memory);
+			if (!closest.encloses(hit.depth))
+				hit = {};
+		}
 		if (!hit.exists() || (hit.normal.dot(ray.direction) > 0.0 && besideFront(ray, hit.depth, passages))) {
 			const RayHit crossing = march(ray, best.depth, passages, memory);
 			return crossing.exists() ? crossing : best;

@@ -29,7 +29,8 @@ struct RayTracer::Passage {
 namespace {
 
 constexpr Index  sphereNeighbor = 6;    // as far as that from its point a sphere reaches
-constexpr double largestSphere  = 3.0;  // spacings: lonely points enclose no surface
+constexpr double leastSphere    = 1.3;  // spacings: uneven points leave no gaps between their spheres
+constexpr double largestSphere  = 3.0;  // likewise: lonely points enclose no surface
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
 constexpr double margin         = 0.5;  // spacings: most places are that close to the point of their sphere
 constexpr double strayed        = 1.8;  // radii: a loop so far from its sphere's centre is given up
@@ -38,6 +39,8 @@ constexpr double behind         = 5.0;  // radii: a back so close to a front is 
 // Of the march, in spacings: its shortest step; how much farther than the closest control point others still
 // count; how far from the surface the closest alone tells enough.
 constexpr double shortest = 0.35, blend = 0.5, far = 0.4;
+constexpr double beyond  = 0.5;  // radii: so far out of the spheres too, which leave gaps where points are uneven
+constexpr double outline = 1e-3; // cosine of the angle between a normal and a ray there
 constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
@@ -161,7 +164,9 @@ RayTracer::RayTracer(
 		const auto     near   = control.search.nearest(center, sphereNeighbor + 1);
 		const double   radius = (control.cloud.positions.col(near.back()) - center).norm();
 		spheres->all[i]       = {
-            center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
+            center,
+			control.cloud.normals.col(i),
+			std::clamp(radius, leastSphere * control.spacing[i], largestSphere * control.spacing[i])};
 	});
 	std::vector<Index>              indices(n);
 	std::vector<SphereTree::Volume> boxes(n);
@@ -317,10 +322,10 @@ RayHit RayTracer::bracketed(
 		}
 	}
 	// At an outline normals may turn a little too far.
+	const double along = found.normal.dot(ray.direction), least = inwards ? -outline : outline;
 	Vector3d     normal = found.normal;
-	const double along  = normal.dot(ray.direction);
-	if ((along > 0.0) == inwards)
-		normal = (normal - along * ray.direction).normalized();
+	if (inwards ? along > least : along < least)
+		normal = (normal + (least - along) * ray.direction).normalized();
 	return {t, ray.origin + t * ray.direction, normal};
 }
 
@@ -331,8 +336,10 @@ RayHit RayTracer::march(
 {
 	thread_local std::vector<std::pair<double, double>> ways;
 	ways.clear();
-	for (const Passage& passage : passages)
-		ways.emplace_back(passage.closest - passage.half, passage.closest + passage.half);
+	for (const Passage& passage : passages) {
+		const double half = passage.half + beyond * m_spheres->all[passage.sphere].radius;
+		ways.emplace_back(passage.closest - half, passage.closest + half);
+	}
 	std::sort(ways.begin(), ways.end());
 	for (std::size_t k = 0; k < ways.size();) {
 		double t = std::max(0.0, ways[k].first), out = ways[k].second;

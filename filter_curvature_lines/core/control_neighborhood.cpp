@@ -184,9 +184,9 @@ PlaneSums ControlNeighborhood::planeSums(const Vector3d& place, double h) const
 	return sums;
 }
 
-bool ControlNeighborhood::pastEdge(const Vector3d& place, const Vector3d& normal) const
+double ControlNeighborhood::pastEdge(const Vector3d& place, const Vector3d& normal) const
 {
-	double closest = std::numeric_limits<double>::infinity(), above = 0.0;
+	double closest = std::numeric_limits<double>::infinity(), above = -closest;
 	for (const OrientedPoint& other : m_opposing) {
 		const Vector3d d = place - other.position;
 		// Sheets in front are those across a gap.
@@ -195,7 +195,7 @@ bool ControlNeighborhood::pastEdge(const Vector3d& place, const Vector3d& normal
 			above   = d.dot(other.normal);
 		}
 	}
-	return above > 0.0;
+	return above;
 }
 
 void ControlNeighborhood::heights(

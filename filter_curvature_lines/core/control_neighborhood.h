@@ -47,8 +47,11 @@ public:
 
 	NormalSums normalSums(const Eigen::Vector3d& place, double h) const;
 	PlaneSums  planeSums(const Eigen::Vector3d& place, double h) const;
-	// Whether a place on this sheet, with this normal, lies past the edge where a sheet behind it ends it.
-	bool pastEdge(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
+	// Whether points on other sheets are around.
+	bool besideOthers() const { return !m_opposing.empty(); }
+	// How far a place on this sheet, with this normal, lies past the edge where a sheet behind it ends it;
+	// negative before the edge, minus infinity where no sheet is behind.
+	double pastEdge(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 	// Heights over the tangent plane at a place, in units of h, with the same weights.
 	void heights(
 		const Eigen::Vector3d& place, const TangentFrame& frame, double h, LocalSamples<1>& samples) const;

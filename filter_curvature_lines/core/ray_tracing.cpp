@@ -1,4 +1,5 @@
-// Spheres in a bounding volume hierarchy (Eigen's), and the fixed-point loop along a ray.
+// Spheres in a bounding volume hierarchy (Eigen's), the fixed-point loop along a ray, and the march where that
+// loop is not to be trusted.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ray_tracing.h"
 
@@ -9,18 +10,37 @@
 
 namespace curvature_lines {
 
-namespace {
-
 using Eigen::Vector3d;
 
+// Of a ray through a sphere.
+struct RayTracer::Passage {
+	double start;   // where on the ray the surface is likely: at the plane of the sphere's point
+	double closest; // to the sphere's centre
+	double half;    // of the way through
+	double aside;   // squared distance from the centre to the ray
+	double off;     // and to where the plane is met; larger than all where it is not
+	Index  sphere;
+	bool   done;
+
+	double squaredDistance(double t) const { return (t - closest) * (t - closest) + aside; }
+	bool   encloses(double t) const { return std::abs(t - closest) < half; }
+};
+
+namespace {
+
 constexpr Index  sphereNeighbor = 6;    // as far as that from its point a sphere reaches
-constexpr double largestSphere  = 3.0;  // spacings: lonely points enclose no surface
+constexpr double leastSphere    = 1.3;  // spacings: uneven points leave no gaps between their spheres
+constexpr double largestSphere  = 3.0;  // likewise: lonely points enclose no surface
 constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
 constexpr double margin         = 0.5;  // spacings: most places are that close to the point of their sphere
-constexpr double strayed        = 1.8;  // radii: so far from a sphere's centre others know the surface better
+constexpr double strayed        = 1.8;  // radii: a loop so far from its sphere's centre is given up
+constexpr double turned         = 0.97; // cosine between the normals of a hit and of its sphere's point
 constexpr double behind         = 5.0;  // radii: a back so close to a front is an artefact
-// Cosines between the normals of a hit and of its sphere's point: another sphere has to confirm it; no hit.
-constexpr double turned = 0.97, opposed = 0.3;
+// Of the march, in spacings: its shortest step; how much farther than the closest control point others still
+// count; how far from the surface the closest alone tells enough.
+constexpr double shortest = 0.35, blend = 0.5, far = 0.4;
+constexpr double beyond  = 0.5;  // radii: so far out of the spheres too, which leave gaps where points are uneven
+constexpr double outline = 1e-3; // cosine of the angle between a normal and a ray there
 constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
@@ -29,15 +49,6 @@ struct Sphere {
 };
 
 using SphereTree = Eigen::KdBVH<double, 3, Index>;
-
-// A sphere that a ray passes.
-struct Passage {
-	double start;   // where on the ray the surface is likely: at the plane of the sphere's point
-	double closest; // to the sphere's centre
-	double off;     // squared distance from the centre to where the plane is met; larger than all where it is not
-	Index  sphere;
-	bool   done;
-};
 
 // All spheres within a distance of a ray.
 struct SphereCollector {
@@ -69,21 +80,6 @@ struct SphereCollector {
 	}
 };
 
-// Adds the passage of a ray through a sphere to others, if it meets it.
-void addPassage(const Ray& ray, const Sphere& sphere, Index index, std::vector<Passage>& passages)
-{
-	const Vector3d d       = sphere.center - ray.origin;
-	const double   closest = d.dot(ray.direction);
-	const double   whole   = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
-	const double   square  = whole - aside; // of half the passage
-	if (!(square > 0.0) || !(closest + std::sqrt(square) > 0.0))
-		return;
-	const double slope  = ray.direction.dot(sphere.normal);
-	const double start  = d.dot(sphere.normal) / slope, along = start - closest;
-	const bool   inside = std::abs(slope) > steepest && along * along < square;
-	passages.push_back({inside ? start : closest, closest, aside + (inside ? along * along : whole), index, false});
-}
-
 // The root of the quadric along `direction` from `start` (both in space) that is nearest to start; where there
 // is none, the place of closest approach, and `found` is false.
 double stepToQuadric(
@@ -103,18 +99,6 @@ double stepToQuadric(
 	// The smaller root, without cancellation.
 	const double large = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
 	return large != 0.0 ? c / large : 0.0;
-}
-
-// At thin rims a ray may slip past the rounded front and meet the back, from inside: whether there is a front
-// about that the ray should have met.
-bool besideFront(
-	const Ray& ray, double depth, const std::vector<Passage>& passages, const std::vector<Sphere>& spheres)
-{
-	return std::any_of(passages.begin(), passages.end(), [&](const Passage& passage) {
-		const Sphere& sphere = spheres[passage.sphere];
-		return sphere.normal.dot(ray.direction) < 0.0 &&
-			std::abs(passage.closest - depth) < behind * sphere.radius;
-	});
 }
 
 } // namespace
@@ -180,7 +164,9 @@ RayTracer::RayTracer(
 		const auto     near   = control.search.nearest(center, sphereNeighbor + 1);
 		const double   radius = (control.cloud.positions.col(near.back()) - center).norm();
 		spheres->all[i]       = {
-            center, control.cloud.normals.col(i), std::min(radius, largestSphere * control.spacing[i])};
+            center,
+			control.cloud.normals.col(i),
+			std::clamp(radius, leastSphere * control.spacing[i], largestSphere * control.spacing[i])};
 	});
 	std::vector<Index>              indices(n);
 	std::vector<SphereTree::Volume> boxes(n);
@@ -209,21 +195,15 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 	return slot;
 }
 
-struct RayTracer::Approach {
-	RayHit hit;
-	double last;             // where on the ray the surface was looked for
-	bool   doubtful = false; // far from the sphere's point or on another face
-};
-
-RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double start, Memory& memory) const
+// Nothing unless the surface is met surely: on the side of the sphere's point, away from other sheets.
+RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memory) const
 {
-	Approach            result{{}, start};
-	const Sphere&       sphere = m_spheres->all[point];
-	const Memory::Slot& slot   = surfaceAt(point, memory);
-	if (!slot.quadric)
-		return result;
+	const Sphere&       sphere = m_spheres->all[passage.sphere];
+	const Memory::Slot& slot   = surfaceAt(passage.sphere, memory);
+	if (!slot.quadric || slot.around.besideOthers())
+		return {};
 	LocalQuadric quadric  = *slot.quadric;
-	double       t        = start;
+	double       t        = passage.start;
 	Vector3d     place    = ray.origin + t * ray.direction;
 	bool         found    = true;
 	double       lastStep = 0.0, lastMove = 0.0;
@@ -239,20 +219,158 @@ RayTracer::Approach RayTracer::approach(const Ray& ray, Index point, double star
 		place = ray.origin + t * ray.direction;
 		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
 		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius || !(t > 0.0))
-			return result;
-		result.last = t;
+			return {};
 		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
 			const Vector3d normal = quadric.normalAt(place);
-			const double   turn   = normal.dot(slot.around.side());
-			result.doubtful       = turn < turned || (place - sphere.center).norm() > sphere.radius;
-			if (turn > opposed && !slot.around.pastEdge(place, normal))
-				result.hit = {t, place, normal};
-			return result;
+			if (normal.dot(slot.around.side()) > turned)
+				return {t, place, normal};
+			return {};
 		}
 		if (!m_surface.follow(slot.around, place, quadric))
-			return result;
+			return {};
 	}
-	return result;
+	return {};
+}
+
+struct RayTracer::Elevation {
+	double   above = 0.0; // the surface at its foot
+	Vector3d normal = Vector3d::Zero();
+	double   spacing = 0.0;
+};
+
+std::optional<RayTracer::Elevation> RayTracer::elevationOver(
+	Index point, const Vector3d& place, Memory& memory) const
+{
+	const Memory::Slot& slot = surfaceAt(point, memory);
+	if (!slot.quadric)
+		return std::nullopt;
+	LocalQuadric quadric = *slot.quadric;
+	if (!m_surface.follow(slot.around, place, quadric))
+		return std::nullopt;
+	const Vector3d normal = quadric.normalAt(place);
+	const double   above  = (place - quadric.foot(place)).dot(quadric.n);
+	return Elevation{std::max(above, slot.around.pastEdge(place, normal)), normal, slot.around.spacing()};
+}
+
+const RayTracer::Passage& RayTracer::closestTo(double t, const std::vector<Passage>& passages)
+{
+	return *std::min_element(passages.begin(), passages.end(), [t](const Passage& a, const Passage& b) {
+		return a.squaredDistance(t) < b.squaredDistance(t);
+	});
+}
+
+// Blended from the closest control points: of two neighbours, one may know of a sheet that the other does not.
+std::optional<RayTracer::Elevation> RayTracer::elevationAt(
+	const Ray& ray, double t, const std::vector<Passage>& passages, Memory& memory) const
+{
+	const Vector3d place = ray.origin + t * ray.direction;
+	const Passage& closest = closestTo(t, passages);
+	const auto     first   = elevationOver(closest.sphere, place, memory);
+	if (!first || std::abs(first->above) > far * first->spacing)
+		return first;
+	const double least = std::sqrt(closest.squaredDistance(t)), more = blend * m_control.spacing[closest.sphere];
+	Elevation    sum   = *first;
+	double       total = 1.0;
+	for (const Passage& other : passages) {
+		const double square = other.squaredDistance(t);
+		if (&other == &closest || square >= (least + more) * (least + more))
+			continue;
+		const auto   one   = elevationOver(other.sphere, place, memory);
+		const double share = 1.0 - (std::sqrt(square) - least) / more, w = share * share;
+		if (!one)
+			continue;
+		sum.above += w * one->above;
+		sum.normal += w * one->normal;
+		sum.spacing += w * one->spacing;
+		total += w;
+	}
+	return Elevation{sum.above / total, sum.normal.normalized(), sum.spacing / total};
+}
+
+// Between two places on either side of the surface.
+RayHit RayTracer::bracketed(
+	const Ray&                  ray,
+	double                      low,
+	double                      high,
+	Elevation                   atLow,
+	Elevation                   atHigh,
+	const std::vector<Passage>& passages,
+	Memory&                     memory) const
+{
+	const bool inwards = atLow.above > 0.0;
+	double     t       = high;
+	Elevation  found   = atHigh;
+	for (int it = 0; it < m_options.maxIterations; ++it) {
+		const double tolerance = m_options.tolerance * found.spacing;
+		if (high - low < tolerance || (it > 0 && std::abs(found.above) < 0.1 * tolerance))
+			break;
+		t = (low * atHigh.above - high * atLow.above) / (atHigh.above - atLow.above);
+		const auto there = elevationAt(ray, t, passages, memory);
+		if (!there)
+			break;
+		found = *there;
+		// Regula falsi; an end that stays counts half from then on (Illinois).
+		if ((found.above > 0.0) == inwards) {
+			low   = t;
+			atLow = found;
+			atHigh.above *= 0.5;
+		}
+		else {
+			high   = t;
+			atHigh = found;
+			atLow.above *= 0.5;
+		}
+	}
+	// At an outline normals may turn a little too far.
+	const double along = found.normal.dot(ray.direction), least = inwards ? -outline : outline;
+	Vector3d     normal = found.normal;
+	if (inwards ? along > least : along < least)
+		normal = (normal + (least - along) * ray.direction).normalized();
+	return {t, ray.origin + t * ray.direction, normal};
+}
+
+// From place to place through the spheres until the ray crosses the surface: slower than approach(), and sure
+// where the ray grazes the surface and where sheets are close to each other.
+RayHit RayTracer::march(
+	const Ray& ray, double end, const std::vector<Passage>& passages, Memory& memory) const
+{
+	thread_local std::vector<std::pair<double, double>> ways;
+	ways.clear();
+	for (const Passage& passage : passages) {
+		const double half = passage.half + beyond * m_spheres->all[passage.sphere].radius;
+		ways.emplace_back(passage.closest - half, passage.closest + half);
+	}
+	std::sort(ways.begin(), ways.end());
+	for (std::size_t k = 0; k < ways.size();) {
+		double t = std::max(0.0, ways[k].first), out = ways[k].second;
+		for (; k < ways.size() && ways[k].first <= out; ++k)
+			out = std::max(out, ways[k].second);
+		std::optional<Elevation> last;
+		for (double lastT = t; t < std::min(out, end);) {
+			const auto here = elevationAt(ray, t, passages, memory);
+			if (last && here && (last->above > 0.0) != (here->above > 0.0)) {
+				const RayHit hit = bracketed(ray, lastT, t, *last, *here, passages, memory);
+				if (last->above > 0.0 || !besideFront(ray, hit.depth, passages))
+					return hit;
+			}
+			last  = here;
+			lastT = t;
+			t += here ? std::max(shortest * here->spacing, 0.9 * std::abs(here->above)) :
+						shortest * m_spheres->all[passages.front().sphere].radius;
+		}
+	}
+	return {};
+}
+
+// At thin rims a ray may slip past the rounded front and meet the back, from inside: whether there is a front
+// about that the ray should have met.
+bool RayTracer::besideFront(const Ray& ray, double depth, const std::vector<Passage>& passages) const
+{
+	return std::any_of(passages.begin(), passages.end(), [&](const Passage& passage) {
+		const Sphere& sphere = m_spheres->all[passage.sphere];
+		return sphere.normal.dot(ray.direction) < 0.0 &&
+			std::abs(passage.closest - depth) < behind * sphere.radius;
+	});
 }
 
 void RayTracer::aim(const Ray& axis, double spread, Memory& memory) const
@@ -274,16 +392,35 @@ RayHit RayTracer::trace(const Ray& ray) const
 	return trace(ray, memory);
 }
 
+void RayTracer::findPassages(const Ray& ray, const Memory& memory, std::vector<Passage>& passages) const
+{
+	passages.clear();
+	for (const Index s : memory.m_spheres) {
+		const Sphere&  sphere  = m_spheres->all[s];
+		const Vector3d d       = sphere.center - ray.origin;
+		const double   closest = d.dot(ray.direction);
+		const double   whole = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
+		if (!(whole > aside))
+			continue;
+		const double half = std::sqrt(whole - aside);
+		if (!(closest + half > 0.0))
+			continue;
+		const double slope  = ray.direction.dot(sphere.normal);
+		const double start  = d.dot(sphere.normal) / slope, along = start - closest;
+		const bool   inside = std::abs(slope) > steepest && std::abs(along) < half;
+		passages.push_back(
+			{inside ? start : closest, closest, half, aside, aside + (inside ? along * along : whole), s, false});
+	}
+	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
+		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
+	});
+}
+
 RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 {
 	RayHit best;
 	thread_local std::vector<Passage> passages;
-	passages.clear();
-	for (const Index s : memory.m_spheres)
-		addPassage(ray, m_spheres->all[s], s, passages);
-	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
-		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
-	});
+	findPassages(ray, memory, passages);
 	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
 		if (passages[first].done)
 			continue;
@@ -293,23 +430,25 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 		for (std::size_t k = first; k < passages.size() && passages[k].start < last; ++k)
 			if (!passages[k].done && passages[k].off < passages[chosen].off)
 				chosen = k;
-		Approach found = approach(ray, passages[chosen].sphere, passages[chosen].start, memory);
-		if (found.hit.exists() && found.doubtful) {
-			// Near sharp edges neighbourhoods differ: that of the closest point decides.
-			const Index nearest = m_control.search.nearest(found.hit.position, 1).front();
-			if (nearest != passages[chosen].sphere)
-				found = approach(ray, nearest, found.hit.depth, memory);
+		RayHit hit = approach(ray, passages[chosen], memory);
+		if (hit.exists() && !passages[chosen].encloses(hit.depth)) {
+			// Another sphere knows the surface there better.
+			Passage closest = closestTo(hit.depth, passages);
+			closest.start   = hit.depth;
+			hit             = approach(ray, closest, memory);
+			if (!closest.encloses(hit.depth))
+				hit = {};
 		}
-		if (found.hit.exists() && found.hit.normal.dot(ray.direction) > 0.0 &&
-			besideFront(ray, found.hit.depth, passages, m_spheres->all))
-			found.hit = {};
-		if (found.hit.depth < best.depth)
-			best = found.hit;
+		if (!hit.exists() || (hit.normal.dot(ray.direction) > 0.0 && besideFront(ray, hit.depth, passages))) {
+			const RayHit crossing = march(ray, best.depth, passages, memory);
+			return crossing.exists() ? crossing : best;
+		}
+		if (hit.depth < best.depth)
+			best = hit;
 		// Spheres about there would find the same.
 		passages[first].done = passages[chosen].done = true;
-		const double alike = found.hit.exists() ? 1.0 : 0.5; // radii
 		for (Passage& passage : passages)
-			if (std::abs(passage.closest - found.last) < alike * m_spheres->all[passage.sphere].radius)
+			if (std::abs(passage.closest - hit.depth) < m_spheres->all[passage.sphere].radius)
 				passage.done = true;
 	}
 	return best;

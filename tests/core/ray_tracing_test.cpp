@@ -177,6 +177,71 @@ TEST(RayTracing, ClosedShapesWithSharpEdgesHideTheirBacks)
 	}
 }
 
+// A plate, its rims sampled like its sides, points on edges and corners with the mean normal.
+PointCloud plate(double thickness, int across)
+{
+	const double          spacing = 1.0 / across;
+	const int             layers  = int(std::lround(thickness / spacing));
+	std::vector<Vector3d> positions, normals;
+	const auto            side = [](int k, int last) { return double(k == last) - double(k == 0); };
+	for (int i = 0; i <= across; ++i)
+		for (int j = 0; j <= across; ++j)
+			for (int k = 0; k <= layers; ++k) {
+				const Vector3d normal(side(i, across), side(j, across), side(k, layers));
+				if (normal.isZero())
+					continue;
+				positions.push_back(Vector3d(i * spacing - 0.5, j * spacing - 0.5, k * spacing - 0.5 * thickness));
+				normals.push_back(normal.normalized());
+			}
+	PointCloud cloud{Matrix3Xd(3, positions.size()), Matrix3Xd(3, positions.size())};
+	for (std::size_t p = 0; p < positions.size(); ++p) {
+		cloud.positions.col(p) = positions[p];
+		cloud.normals.col(p)   = normals[p];
+	}
+	return cloud;
+}
+
+bool meetsBox(const Ray& ray, const Vector3d& half)
+{
+	const Eigen::Array3d inverse = ray.direction.array().inverse();
+	const Eigen::Array3d a = (-half - ray.origin).array() * inverse, b = (half - ray.origin).array() * inverse;
+	return a.min(b).maxCoeff() < a.max(b).minCoeff();
+}
+
+TEST(RayTracing, ThinPlatesHaveNoHolesAndCleanOutlines)
+{
+	const int    across  = 30;
+	const double spacing = 1.0 / across;
+	for (const double thickness : {2.0 * spacing, 4.0 * spacing}) {
+		const Scene                     scene(plate(thickness, across));
+		const CurvatureDrivenSurface    driven(scene.control());
+		const MovingLeastSquaresSurface squares(scene.control());
+		const Vector3d                  half(0.5, 0.5, 0.5 * thickness);
+		for (const PointSetSurface* surface : {static_cast<const PointSetSurface*>(&driven), static_cast<const PointSetSurface*>(&squares)})
+			for (const Vector3d& tilt : {Vector3d(0.02, 0.01, 1.0), Vector3d(0.2, 0.05, 1.0), Vector3d(0.4, 0.3, 1.0), Vector3d(1.0, 0.2, 0.1)}) {
+				const RayTracer    tracer(*surface, scene.control(), {});
+				const Vector3d     direction = -tilt.normalized();
+				const TangentFrame frame(direction);
+				int                holes = 0, strays = 0, inside = 0;
+				// Fitted planes know no normals: at corners they may stick out a little.
+				const double outside = surface == &driven ? 0.25 : 1.0;
+				SCOPED_TRACE(surface == &driven ? "curvature-driven" : "moving least squares");
+				for (double x = -0.9; x < 0.9; x += 0.017)
+					for (double y = -0.9; y < 0.9; y += 0.017) {
+						const Ray  ray{x * frame.u + y * frame.v - 3.0 * direction, direction};
+						const bool hit = tracer.trace(ray).exists();
+						const bool deep = meetsBox(ray, half.array() - 0.8 * spacing);
+						inside += deep;
+						holes += deep && !hit;
+						strays += hit && !meetsBox(ray, half.array() + outside * spacing);
+					}
+				EXPECT_GT(inside, 100);
+				EXPECT_EQ(holes, 0) << thickness << ", from " << tilt.transpose();
+				EXPECT_EQ(strays, 0) << thickness << ", from " << tilt.transpose();
+			}
+	}
+}
+
 TEST(RayTracing, NumberOfThreadsChangesNothing)
 {
 	const Scene                  scene("torus", 1500);

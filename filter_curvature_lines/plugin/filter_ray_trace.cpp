@@ -59,7 +59,7 @@ RichParameterList parameters(const MeshDocument& document)
 		"lines",
 		current,
 		&document,
-		"Lines to draw (the cloud itself: none)",
+		"Layer of lines (the cloud's own: no lines)",
 		"The layer whose lines (of curvature, or any edges) are drawn on the surface, in the colours of its vertices. "
 		"Leave the cloud's own layer here, as it is at first, to draw none."));
 	list.addParam(RichEnum(

@@ -186,7 +186,7 @@ FilterSpec projectionFilter()
 		"the same). Vertices farther than three spacings from the control points, and those whose "
 		"neighbours do not tell a surface, stay and are counted. Points already on the surface stay."
 		"<br><br><b>Writes</b> coordinates and normals of the projected vertices; with more than one "
-		"point per point, a new layer <i>resampled surface</i> instead. For noisy scans, denoise first "
+		"point per point, a new layer '<i>resampled surface</i>' instead. For noisy scans, denoise first "
 		"(<i>Denoise Point Cloud by Robust Curvature</i>): the bandwidth here is fixed, in spacings." +
 			helpReferenceTejada,
 		FilterPlugin::PointSet + FilterPlugin::Sampling,

@@ -59,9 +59,9 @@ RichParameterList parameters(const MeshDocument& document)
 		"lines",
 		current,
 		&document,
-		"Lines (own layer: none)",
-		"A layer of lines (of curvature, or any edges) to draw on the surface in its vertices' colours; the "
-		"cloud's own layer: none."));
+		"Layer of lines (the cloud's own: no lines)",
+		"The layer whose lines (of curvature, or any edges) are drawn on the surface, in the colours of its vertices. "
+		"Leave the cloud's own layer here, as it is at first, to draw none."));
 	list.addParam(RichEnum(
 		"camera",
 		0,

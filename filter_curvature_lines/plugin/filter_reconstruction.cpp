@@ -244,7 +244,7 @@ FilterSpec reconstructionFilter()
 		"lines along the directions built." +
 			helpInput +
 			" This filter can estimate missing normals itself."
-			"<br><br><b>Writes</b> a new layer <i>curvature-aligned mesh</i> of polygons (in "
+			"<br><br><b>Writes</b> a new layer '<i>curvature-aligned mesh</i>' of polygons (in "
 			"MeshLab: "
 			"triangles whose inner edges are hidden) and makes it current; the input stays as it "
 			"is. Save the mesh as OBJ: PLY drops polygons." +

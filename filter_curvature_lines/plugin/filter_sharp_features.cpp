@@ -117,7 +117,7 @@ FilterSpec sharpFeaturesFilter()
 		"spacings, are no such lines." +
 			helpInput +
 			" Remove outliers before (<i>Select Outliers by Robust Curvature</i>)."
-			"<br><br><b>Writes</b> a new layer <i>sharp features</i> of vertices and edges, unless there "
+			"<br><br><b>Writes</b> a new layer '<i>sharp features</i>' of vertices and edges, unless there "
 			"is no sharp edge: normals (the mean of the two faces'), quality (the angle between the faces' "
 			"normals in degrees, positive where convex), colour (orange convex, blue concave), attribute "
 			"<tt>line_id</tt>. Save it as OBJ: PLY drops edges." +

@@ -207,7 +207,7 @@ FilterSpec traceLinesFilter()
 		"principal directions, without a mesh. Lines start where the curvature estimate is most "
 		"reliable; they are as dense as the curvature across them asks for." +
 			helpInput +
-			"<br><br><b>Writes</b> a new layer <i>lines of curvature</i> of vertices and edges, "
+			"<br><br><b>Writes</b> a new layer '<i>lines of curvature</i>' of vertices and edges, "
 			"and "
 			"makes it current: normals, quality (the curvature along the line), colour (orange "
 			"along PD1, blue along PD2) and the vertex attributes <tt>line_id</tt>, "

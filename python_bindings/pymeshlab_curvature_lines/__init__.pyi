@@ -374,8 +374,8 @@ class MeshSet(pymeshlab.MeshSet):
         color_by: Plain: one light grey; Curvature: convex red, saddle green, concave blue, flat white; Vertex Colour:
             that of the layer, as other filters leave it
 
-        lines: A layer of lines (of curvature, or any edges) to draw on the surface in its vertices' colours; the
-            cloud's own layer: none.
+        lines: The layer whose lines (of curvature, or any edges) are drawn on the surface, in the colours of its
+            vertices. Leave the cloud's own layer here, as it is at first, to draw none.
 
         camera: Automatic: sees all points, from the side their normals face. Given: by the parameters below.
 

@@ -20,7 +20,7 @@ class MeshLab:
         self.printed = log
         self.process = desktop.start("meshlab", *map(str, files), log=log)
         wait_for("the files to be opened", lambda: "All files opened" in log.read_text(errors="replace"), 60)
-        wait_for("MeshLab to be accessible", accessible_programs)
+        wait_for("MeshLab to be accessible", accessible_programs, 60)
         self.application = wait_for("MeshLab", self._application)
         self.window = wait_for("its window", lambda: self._frame(r"MeshLab 20.*\[Project"))
         self.bar = self.window.find("progress bar").box

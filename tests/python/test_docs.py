@@ -5,7 +5,7 @@ import re
 import pymeshlab
 import pytest
 
-from helpers import CHECKOUT
+from helpers import ATTRIBUTES, CHECKOUT, layer
 
 # The files the examples name, and the sample clouds that stand in for them.
 SAMPLES = {"scan.ply": "torus_1600_noise1.ply", "part.ply": "cube_600.ply"}
@@ -38,6 +38,17 @@ def test_the_guide_names_every_filter():
     for name in package.filters():
         assert name in guide, name
         assert name in pymeshlab.filter_list()
+
+
+def test_the_pages_name_only_parameters_and_attributes_that_exist():
+    meshes = layer([[0, 0, 0]])
+    filters = pytest.importorskip("pymeshlab_curvature_lines").filters()
+    known = {name for each in filters for name in (each, *meshes.filter_parameter_values(each))}
+    known |= {*ATTRIBUTES, "line_id", "line_family", "line_closed", "line_arc_length", "moved"}
+    known |= {"debootstrap", "libgl1", "libopengl0"}
+    for page in PAGES:
+        prose = re.sub(r"^```.*?^```", "", (CHECKOUT / page).read_text(), flags=re.MULTILINE | re.DOTALL)
+        assert set(re.findall(r"`([a-z_]+\d?)`", prose)) <= known, page
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/guide.md", "docs/gallery.md", "docs/contributing.md"])

@@ -66,7 +66,10 @@ def _child(cloud: Arrays, quads: str, depth: str, faces: str, spacing: str) -> A
         edge = pymeshlab.PureValue(np.sqrt(area / int(faces) * 2.0 / np.sqrt(3.0)))
         meshes.meshing_isotropic_explicit_remeshing(iterations=6, targetlen=edge)
         meshes.meshing_tri_to_quad_by_smart_triangle_pairing()
-        found = meshes.current_mesh().polygonal_face_list()
+        try:
+            found = meshes.current_mesh().polygonal_face_list()
+        except MemoryError:  # what pairing can leave of a trimmed surface
+            found = []
         vertices = meshes.current_mesh().vertex_matrix()
     elif quads == "instant":
         # The package always splits every face into four.

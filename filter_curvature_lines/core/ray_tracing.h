@@ -1,9 +1,7 @@
 // Ray tracing of point-set surfaces (Adamson and Alexa 2003; T06 section 5): spheres around the control points
-// enclose the surface, and local quadrics lead a ray to it. A sphere reaches as far as its point's sixth
-// neighbour, and 1.3 spacings at least: without the latter some rays pass between the spheres of uneven points
-// (68 pixels of the dragon). Reaching half as far again instead leaves as few of them (7, not 8) and takes 1.3 to
-// 1.5 times as long. Where a ray grazes the surface, or sheets are close to each other, the loop may slide past
-// it; there the ray is marched along until it crosses the surface, which is not in Adamson and Alexa.
+// enclose the surface, and local quadrics lead a ray to it. Where a ray grazes the surface, or sheets are close
+// to each other, that loop may slide past it; there the ray is marched along until it crosses the surface, which
+// is not in Adamson and Alexa.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

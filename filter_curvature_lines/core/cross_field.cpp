@@ -24,7 +24,7 @@ constexpr double sureErrors = 3.0; // k1 - k2 below so many standard errors tell
 constexpr double cellErrors = 18.0;
 constexpr double mostTrust  = 10.0;
 // Of a component. Where directions are known in less than one cell of the mesh, they are chance: four of 6316
-// points of a noisy sphere would bend the whole field, and 94 lines end in it instead of 3.
+// points of a noisy sphere would bend the whole field, and 94 lines end in it instead of 5.
 constexpr double fewestCells = 1.0;
 // What errors leave out, such as corners nearby: a difference no estimate tells from flat, over the diagonal.
 constexpr double leastError = 0.02;

@@ -5,17 +5,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Core>
-
 namespace curvature_lines {
 
 namespace {
 
-using Column = Eigen::Map<const Eigen::ArrayXd>;
-
-Column column(const std::vector<double>& values)
+// Anderson's acceleration with one step of memory: re-weighting converges linearly, and where the model goes
+// shows in how the last step differs from this one. The fixed point stays the same. No farther than another
+// step: up to twice the step the quadratic that the weights stand for still falls along it.
+VariationModel furtherOn(
+	const VariationModel& advance, const VariationModel& step, const VariationModel& lastStep)
 {
-	return Column(values.data(), static_cast<Eigen::Index>(values.size()));
+	const VariationModel change  = step - lastStep;
+	const double         squared = change.squaredNorm();
+	if (!(squared > 0.0))
+		return VariationModel::Zero();
+	const VariationModel further = -(change.cwiseProduct(step).sum() / squared) * advance;
+	const double         length = further.norm(), limit = step.norm();
+	return length > limit ? VariationModel(further * (limit / length)) : further;
 }
 
 } // namespace
@@ -57,43 +63,91 @@ bool VariationSamples::spanPlane() const
 	return uu * vv - uv * uv > 1e-6 * (uu + vv) * (uu + vv);
 }
 
-VariationModel weightedLeastSquares(
-	const VariationSamples& samples, const std::vector<double>& weights)
+namespace {
+
+// argmin_X sum_s w_s geometric_s |X dp_s - dn_s|^2, w_s = weightOf(s) asked in one pass over the samples.
+template <class WeightOf>
+VariationModel solveWeighted(const VariationSamples& samples, const WeightOf& weightOf)
 {
+	const double *pu = samples.pu.data(), *pv = samples.pv.data(), *nu = samples.nu.data(),
+				 *nv = samples.nv.data(), *nw = samples.nw.data(), *geometric = samples.geometric.data();
 	// The three rows of X share one 2 x 2 normal matrix.
-	const Column         pu = column(samples.pu), pv = column(samples.pv);
-	const Eigen::ArrayXd w  = column(weights) * column(samples.geometric);
-	const Eigen::ArrayXd u = w * pu, v = w * pv;
-	double               uu = (u * pu).sum(), vv = (v * pv).sum();
-	const double         uv    = (u * pv).sum();
-	const double         trace = uu + vv;
+	double uu = 0.0, uv = 0.0, vv = 0.0;
+	double uOfU = 0.0, vOfU = 0.0, uOfV = 0.0, vOfV = 0.0, uOfW = 0.0, vOfW = 0.0;
+	const Index count = samples.size();
+#pragma omp simd reduction(+ : uu, uv, vv, uOfU, vOfU, uOfV, vOfV, uOfW, vOfW)
+	for (Index s = 0; s < count; ++s) {
+		const double w = weightOf(s) * geometric[s];
+		const double u = w * pu[s], v = w * pv[s];
+		uu += u * pu[s];
+		uv += u * pv[s];
+		vv += v * pv[s];
+		uOfU += u * nu[s];
+		vOfU += v * nu[s];
+		uOfV += u * nv[s];
+		vOfV += v * nv[s];
+		uOfW += u * nw[s];
+		vOfW += v * nw[s];
+	}
+	const double trace = uu + vv;
 	if (!(trace > 0.0))
 		return VariationModel::Zero();
 	uu += 1e-12 * trace;
 	vv += 1e-12 * trace;
 	const double   perDeterminant = 1.0 / (uu * vv - uv * uv);
 	VariationModel model;
-	const auto     solveRow = [&](int row, const Column& dn) {
-        const double bu = (u * dn).sum(), bv = (v * dn).sum();
-        model(row, 0)   = (vv * bu - uv * bv) * perDeterminant;
-        model(row, 1)   = (uu * bv - uv * bu) * perDeterminant;
+	const auto     solveRow = [&](int row, double u, double v) {
+        model(row, 0) = (vv * u - uv * v) * perDeterminant;
+        model(row, 1) = (uu * v - uv * u) * perDeterminant;
 	};
-	solveRow(0, column(samples.nu));
-	solveRow(1, column(samples.nv));
-	solveRow(2, column(samples.nw));
+	solveRow(0, uOfU, vOfU);
+	solveRow(1, uOfV, vOfV);
+	solveRow(2, uOfW, vOfW);
 	return model;
 }
 
-void IrlsSolver::computeResiduals(const VariationSamples& s, const VariationModel& model)
+// w(t) = 2 / (1 + t^2)^2 for t = r / sigma < cut, else 0 (A09, Geman-McClure). Least squares gives every
+// sample the weight of a residual of 0.
+struct GemanMcClure {
+	double perSquaredSigma, limit;
+
+	GemanMcClure(double sigma, const IrlsOptions& options) :
+			perSquaredSigma(options.robust ? 1.0 / (sigma * sigma) : 0.0), limit(options.cut * options.cut)
+	{
+	}
+	double operator()(double squaredResidual) const
+	{
+		const double t2     = squaredResidual * perSquaredSigma;
+		const double one    = 1.0 + t2;
+		const double weight = 2.0 / (one * one);
+		return t2 < limit ? weight : 0.0;
+	}
+};
+
+} // namespace
+
+VariationModel weightedLeastSquares(
+	const VariationSamples& samples, const std::vector<double>& weights)
+{
+	const double* values = weights.data();
+	return solveWeighted(samples, [=](Index s) { return values[s]; });
+}
+
+void IrlsSolver::computeResiduals(const VariationSamples& samples, const VariationModel& model)
 {
 	const double uu = model(0, 0), uv = model(0, 1), vu = model(1, 0), vv = model(1, 1),
 				 wu = model(2, 0), wv = model(2, 1);
-	m_squared.resize(s.pu.size());
-	for (std::size_t k = 0; k < s.pu.size(); ++k) {
-		const double u = uu * s.pu[k] + uv * s.pv[k] - s.nu[k];
-		const double v = vu * s.pu[k] + vv * s.pv[k] - s.nv[k];
-		const double w = wu * s.pu[k] + wv * s.pv[k] - s.nw[k];
-		m_squared[k]   = u * u + v * v + w * w;
+	const double *pu = samples.pu.data(), *pv = samples.pv.data(), *nu = samples.nu.data(),
+				 *nv = samples.nv.data(), *nw = samples.nw.data();
+	const Index count = samples.size();
+	m_squared.resize(count);
+	double* squared = m_squared.data();
+#pragma omp simd
+	for (Index s = 0; s < count; ++s) {
+		const double u = uu * pu[s] + uv * pv[s] - nu[s];
+		const double v = vu * pu[s] + vv * pv[s] - nv[s];
+		const double w = wu * pu[s] + wv * pv[s] - nw[s];
+		squared[s]     = u * u + v * v + w * w;
 	}
 }
 
@@ -128,20 +182,6 @@ double IrlsSolver::scale(const IrlsOptions& options)
 	return std::max(options.sigmaFactor * value, exactResidual);
 }
 
-void IrlsSolver::computeWeights(double sigma, const IrlsOptions& options)
-{
-	// w(t) = 2 / (1 + t^2)^2 for t = r / sigma < cut, else 0 (A09, Geman-McClure). Least squares gives
-	// every sample the weight of a residual of 0.
-	const double perSigma = options.robust ? 1.0 / (sigma * sigma) : 0.0;
-	const double limit    = options.cut * options.cut;
-	m_fit.weights.resize(m_squared.size());
-	for (std::size_t k = 0; k < m_squared.size(); ++k) {
-		const double t2  = m_squared[k] * perSigma;
-		const double one = 1.0 + t2;
-		m_fit.weights[k] = t2 < limit ? 2.0 / (one * one) : 0.0;
-	}
-}
-
 const IrlsFit& IrlsSolver::fit(
 	const VariationSamples& samples, const VariationModel& start, const IrlsOptions& options)
 {
@@ -153,20 +193,30 @@ const IrlsFit& IrlsSolver::fit(
 	if (samples.size() == 0)
 		return m_fit;
 
-	bool moving = true;
+	VariationModel lastNext, lastStep;
+	bool           moving = true;
 	while (moving && m_fit.iterations < options.maxIterations) {
 		// sigma comes from all samples every time and the cut is re-evaluated: a sample may return.
 		computeResiduals(samples, m_fit.model);
-		computeWeights(scale(options), options);
-		const VariationModel next   = weightedLeastSquares(samples, m_fit.weights);
-		const double         change = (next - m_fit.model).norm();
-		moving      = options.robust && change > std::max(options.tolerance * next.norm(), exactResidual);
+		const GemanMcClure   weightOf(scale(options), options);
+		const double*        squared = m_squared.data();
+		const VariationModel next    = solveWeighted(samples, [=](Index s) { return weightOf(squared[s]); });
+		const VariationModel step    = next - m_fit.model;
+		const double         change  = step.norm();
+		moving = options.robust && change > std::max(options.tolerance * next.norm(), exactResidual);
+
 		m_fit.model = next;
+		if (moving && m_fit.iterations > 0)
+			m_fit.model += furtherOn(next - lastNext, step, lastStep);
+		lastNext = next;
+		lastStep = step;
 		++m_fit.iterations;
 	}
 	computeResiduals(samples, m_fit.model);
 	m_fit.sigma = scale(options);
-	computeWeights(m_fit.sigma, options);
+	const GemanMcClure weightOf(m_fit.sigma, options);
+	m_fit.weights.resize(m_squared.size());
+	std::transform(m_squared.begin(), m_squared.end(), m_fit.weights.begin(), weightOf);
 	return m_fit;
 }
 

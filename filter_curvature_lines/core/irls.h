@@ -69,7 +69,6 @@ public:
 private:
 	void   computeResiduals(const VariationSamples& samples, const VariationModel& model);
 	double scale(const IrlsOptions& options);
-	void   computeWeights(double sigma, const IrlsOptions& options);
 
 	IrlsFit             m_fit;
 	double              m_lastQuantile = 0.0; // squared

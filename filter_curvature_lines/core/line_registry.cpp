@@ -17,22 +17,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// The search must be able to come back the way it went.
-NeighborLists symmetric(const NeighborLists& lists)
-{
-	std::vector<std::vector<Index>> rows(lists.size());
-	for (Index i = 0; i < lists.size(); ++i)
-		for (Index j : lists[i]) {
-			rows[i].push_back(j);
-			rows[j].push_back(i);
-		}
-	for (std::vector<Index>& row : rows) {
-		std::sort(row.begin(), row.end());
-		row.erase(std::unique(row.begin(), row.end()), row.end());
-	}
-	return NeighborLists::fromRows(rows);
-}
-
 double distance2ToSegment(const Vector3d& x, const Vector3d& a, const Vector3d& b)
 {
 	const Vector3d ab      = b - a;
@@ -55,43 +39,59 @@ bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector
 
 } // namespace
 
-LineRegistry::LineRegistry(const PointCloud& cloud, const MinimumNeighborhoods& minimum) :
+NeighborLists proximityGraph(const MinimumNeighborhoods& minimum)
+{
+	const NeighborLists&            lists = minimum.neighbors;
+	std::vector<std::vector<Index>> rows(lists.size());
+	for (Index i = 0; i < lists.size(); ++i)
+		for (Index j : lists[i]) {
+			rows[i].push_back(j);
+			rows[j].push_back(i);
+		}
+	for (std::vector<Index>& row : rows) {
+		std::sort(row.begin(), row.end());
+		row.erase(std::unique(row.begin(), row.end()), row.end());
+	}
+	return NeighborLists::fromRows(rows);
+}
+
+LineRegistry::LineRegistry(
+	const PointCloud& cloud, const MinimumNeighborhoods& minimum, const NeighborLists& proximity) :
 		m_positions(cloud.positions),
 		m_spacing(minimum.spacing),
-		m_neighbors(symmetric(minimum.neighbors)),
+		m_neighbors(proximity),
+		m_first(cloud.size(), -1),
 		m_visited(cloud.size(), 0)
 {
-	m_first.fill(std::vector<Index>(cloud.size(), -1));
 }
 
-void LineRegistry::enter(int family, Index cell, Index segment)
+void LineRegistry::enter(Index cell, Index segment)
 {
-	m_entries[family - 1].push_back({segment, m_first[family - 1][cell]});
-	m_first[family - 1][cell] = static_cast<Index>(m_entries[family - 1].size()) - 1;
+	m_entries.push_back({segment, m_first[cell]});
+	m_first[cell] = static_cast<Index>(m_entries.size()) - 1;
 }
 
-void LineRegistry::add(int family, const FlowSegment& segment)
+void LineRegistry::add(const FlowSegment& segment)
 {
-	const Index id = size(family);
-	m_segments[family - 1].push_back(segment);
-	enter(family, segment.fromCell, id);
+	const Index id = size();
+	m_segments.push_back(segment);
+	enter(segment.fromCell, id);
 	if (segment.toCell != segment.fromCell)
-		enter(family, segment.toCell, id);
+		enter(segment.toCell, id);
 }
 
-void LineRegistry::truncate(int family, Index size)
+void LineRegistry::truncate(Index size)
 {
-	std::vector<FlowSegment>& segments = m_segments[family - 1];
-	const auto                leave    = [&](Index cell) {
-        m_first[family - 1][cell] = m_entries[family - 1].back().next;
-        m_entries[family - 1].pop_back();
+	const auto leave = [&](Index cell) {
+		m_first[cell] = m_entries.back().next;
+		m_entries.pop_back();
 	};
-	while (static_cast<Index>(segments.size()) > size) {
-		const FlowSegment& last = segments.back();
+	while (this->size() > size) {
+		const FlowSegment& last = m_segments.back();
 		if (last.toCell != last.fromCell)
 			leave(last.toCell);
 		leave(last.fromCell);
-		segments.pop_back();
+		m_segments.pop_back();
 	}
 }
 
@@ -105,11 +105,8 @@ bool LineRegistry::blocks(const FlowSegment& segment, const ProximityQuery& quer
 		   distance2ToSegment(query.position, segment.from, segment.to) < radius * radius;
 }
 
-bool LineRegistry::occupied(int family, const ProximityQuery& query)
+bool LineRegistry::occupied(const ProximityQuery& query)
 {
-	const std::vector<Index>&       first    = m_first[family - 1];
-	const std::vector<Entry>&       entries  = m_entries[family - 1];
-	const std::vector<FlowSegment>& segments = m_segments[family - 1];
 	if (++m_query == 0) { // the stamps have run round
 		std::fill(m_visited.begin(), m_visited.end(), 0u);
 		m_query = 1;
@@ -117,8 +114,8 @@ bool LineRegistry::occupied(int family, const ProximityQuery& query)
 	m_queue.assign(1, query.cell);
 	m_visited[query.cell] = m_query;
 	for (std::size_t k = 0; k < m_queue.size(); ++k) {
-		for (Index e = first[m_queue[k]]; e >= 0; e = entries[e].next)
-			if (blocks(segments[entries[e].segment], query))
+		for (Index e = m_first[m_queue[k]]; e >= 0; e = m_entries[e].next)
+			if (blocks(m_segments[m_entries[e].segment], query))
 				return true;
 		for (Index j : m_neighbors[m_queue[k]]) {
 			if (m_visited[j] == m_query)
@@ -133,21 +130,21 @@ bool LineRegistry::occupied(int family, const ProximityQuery& query)
 	return false;
 }
 
-Index LineRegistry::countCrossings(const Matrix3Xd& normals) const
+Index LineRegistry::countCrossings(const LineRegistry& other, const Matrix3Xd& normals) const
 {
 	Index count = 0;
-	for (Index cell = 0; cell < static_cast<Index>(m_first[0].size()); ++cell) {
-		if (m_first[0][cell] < 0 || m_first[1][cell] < 0)
+	for (Index cell = 0; cell < static_cast<Index>(m_first.size()); ++cell) {
+		if (m_first[cell] < 0 || other.m_first[cell] < 0)
 			continue;
 		const TangentFrame frame(normals.col(cell));
 		const auto         flat = [&](const Vector3d& x) {
 			return frame.toPlane(x - m_positions.col(cell));
 		};
-		for (Index e = m_first[0][cell]; e >= 0; e = m_entries[0][e].next) {
-			const FlowSegment& s = m_segments[0][m_entries[0][e].segment];
+		for (Index e = m_first[cell]; e >= 0; e = m_entries[e].next) {
+			const FlowSegment& s = m_segments[m_entries[e].segment];
 			const Vector2d     a = flat(s.from), b = flat(s.to);
-			for (Index f = m_first[1][cell]; f >= 0; f = m_entries[1][f].next) {
-				const FlowSegment& t = m_segments[1][m_entries[1][f].segment];
+			for (Index f = other.m_first[cell]; f >= 0; f = other.m_entries[f].next) {
+				const FlowSegment& t = other.m_segments[other.m_entries[f].segment];
 				// Two segments that share two cells are looked at in the first only.
 				if (cell != s.fromCell && (t.fromCell == s.fromCell || t.toCell == s.fromCell))
 					continue;

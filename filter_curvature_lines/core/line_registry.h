@@ -3,8 +3,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
-
 #include "neighborhoods.h"
 
 namespace curvature_lines {
@@ -27,22 +25,28 @@ struct ProximityQuery {
 	double          ownRadius = 0.0, ownFrom = 0.0, ownTo = 0.0;
 };
 
+// The minimum neighbourhoods made symmetric: a search must be able to come back the way it went.
+NeighborLists proximityGraph(const MinimumNeighborhoods& minimum);
+
+// The segments of one family. All arguments must outlive it.
 class LineRegistry {
 public:
-	LineRegistry(const PointCloud& cloud, const MinimumNeighborhoods& minimum);
+	LineRegistry(
+		const PointCloud&           cloud,
+		const MinimumNeighborhoods& minimum,
+		const NeighborLists&        proximity); // proximityGraph(minimum)
 
-	// Families are 1 and 2 everywhere.
-	void  add(int family, const FlowSegment& segment);
-	Index size(int family) const { return static_cast<Index>(m_segments[family - 1].size()); }
-	void  truncate(int family, Index size); // takes back the segments added last
+	void  add(const FlowSegment& segment);
+	Index size() const { return static_cast<Index>(m_segments.size()); }
+	void  truncate(Index size); // takes back the segments added last
 
 	// Distances are to segments, not samples; segments whose normal is more than 60 degrees off are on
 	// another sheet or beyond a fold. Uses scratch of its own: one query at a time.
-	bool occupied(int family, const ProximityQuery& query);
+	bool occupied(const ProximityQuery& query);
 
-	// Crossings of the two families, counted segment by segment in the tangent plane of the cell they
+	// Crossings with another family, counted segment by segment in the tangent plane of the cell they
 	// share. An estimate: crossings where they share none are missed.
-	Index countCrossings(const Eigen::Matrix3Xd& normals) const;
+	Index countCrossings(const LineRegistry& other, const Eigen::Matrix3Xd& normals) const;
 
 private:
 	struct Entry {
@@ -50,17 +54,17 @@ private:
 	};
 
 	bool blocks(const FlowSegment& segment, const ProximityQuery& query) const;
-	void enter(int family, Index cell, Index segment);
+	void enter(Index cell, Index segment);
 
-	const Eigen::Matrix3Xd&                 m_positions;
-	const std::vector<double>&              m_spacing;
-	NeighborLists                           m_neighbors; // minimum neighbourhoods, made symmetric
-	std::array<std::vector<FlowSegment>, 2> m_segments;
-	std::array<std::vector<Entry>, 2>       m_entries; // chained per cell, newest first
-	std::array<std::vector<Index>, 2>       m_first;   // N: newest entry of a cell, -1 if none
-	std::vector<std::uint32_t>              m_visited; // N: the query that last came by
-	std::uint32_t                           m_query = 0;
-	std::vector<Index>                      m_queue;
+	const Eigen::Matrix3Xd&    m_positions;
+	const std::vector<double>& m_spacing;
+	const NeighborLists&       m_neighbors;
+	std::vector<FlowSegment>   m_segments;
+	std::vector<Entry>         m_entries; // chained per cell, newest first
+	std::vector<Index>         m_first;   // N: newest entry of a cell, -1 if none
+	std::vector<std::uint32_t> m_visited; // N: the query that last came by
+	std::uint32_t              m_query = 0;
+	std::vector<Index>         m_queue;
 };
 
 } // namespace curvature_lines

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <queue>
 
 namespace curvature_lines {
@@ -21,59 +22,88 @@ constexpr double ShareOfSpacing = 0.67;
 // Lines end up between d and 2 d apart: realised distance over d, measured.
 constexpr double RealisedDistance = 1.15;
 
+struct Bounds {
+	double least, most;
+};
+
 // d(kappa) jumps to its upper bound and back within a few spacings where the curvature across changes sign,
 // and no line would get through. Mesh sizing fields are graded for that reason: d grows by no more than
 // `gradation` times the distance.
-void limitGrowth(
-	const PointCloud&           cloud,
-	const MinimumNeighborhoods& minimum,
-	double                      gradation,
-	std::vector<double>&        d)
-{
-	using Entry = std::pair<double, Index>;
-	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+class GradedDistances {
+public:
+	GradedDistances(
+		const PointCloud&           cloud,
+		const CurvatureField&       field,
+		const MinimumNeighborhoods& minimum,
+		double                      gradation);
 
-	const auto relax = [&](Index i) {
-		for (Index j : minimum.neighbors[i]) {
-			if (d[j] <= d[i])
-				continue;
-			const double limit =
-				d[i] + gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm();
-			if (limit < d[j]) {
-				d[j] = limit;
-				queue.emplace(limit, j);
-			}
-		}
-	};
-	for (Index i = 0; i < cloud.size(); ++i)
-		relax(i);
-	while (!queue.empty()) {
-		const auto [value, i] = queue.top();
-		queue.pop();
-		if (value <= d[i])
-			relax(i);
-	}
-}
+	// Of family 0 along d1 and family 1 along d2.
+	std::vector<double> operator()(int family, double epsilon, const Bounds& bounds) const;
 
-std::array<std::vector<double>, 2> distances(
+private:
+	const NeighborLists&                  m_neighbors;
+	std::vector<double>                   m_growth; // to each of the neighbours
+	std::array<const Eigen::VectorXd*, 2> m_across; // curvature across the lines
+	std::array<std::vector<Index>, 2>     m_byBound; // the more bent the smaller is d(kappa), for any epsilon
+};
+
+GradedDistances::GradedDistances(
 	const PointCloud&           cloud,
 	const CurvatureField&       field,
 	const MinimumNeighborhoods& minimum,
-	double                      epsilon,
-	double                      minSpacing,
-	double                      maxSpacing,
-	double                      gradation)
+	double                      gradation) :
+		m_neighbors(minimum.neighbors), m_across {&field.k2, &field.k1}
 {
-	std::array<std::vector<double>, 2> result;
-	result[0].resize(field.size());
-	result[1].resize(field.size());
-	for (Index i = 0; i < field.size(); ++i) {
-		result[0][i] = lineSpacing(field.k2[i], epsilon, minSpacing, maxSpacing);
-		result[1][i] = lineSpacing(field.k1[i], epsilon, minSpacing, maxSpacing);
+	m_growth.reserve(m_neighbors.indices.size());
+	for (Index i = 0; i < cloud.size(); ++i)
+		for (const Index j : m_neighbors[i])
+			m_growth.push_back(gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm());
+	for (int family = 0; family < 2; ++family) {
+		const Eigen::VectorXd& across = *m_across[family];
+		std::vector<Index>&    order  = m_byBound[family];
+		order.resize(cloud.size());
+		std::iota(order.begin(), order.end(), 0);
+		std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+			return std::abs(across[a]) > std::abs(across[b]);
+		});
 	}
-	limitGrowth(cloud, minimum, gradation, result[0]);
-	limitGrowth(cloud, minimum, gradation, result[1]);
-	return result;
+}
+
+std::vector<double>
+GradedDistances::operator()(int family, double epsilon, const Bounds& bounds) const
+{
+	const Eigen::VectorXd&    across = *m_across[family];
+	const std::vector<Index>& order  = m_byBound[family];
+	std::vector<double>       d(order.size());
+	for (std::size_t i = 0; i < d.size(); ++i)
+		d[i] = lineSpacing(across[i], epsilon, bounds.least, bounds.most);
+
+	// Dijkstra from all points at once: in the order of d, those that were lowered among the others.
+	using Entry = std::pair<double, Index>;
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> lowered;
+	std::size_t next = 0;
+	while (next < d.size() || !lowered.empty()) {
+		Index i = 0;
+		if (next < d.size() && (lowered.empty() || d[order[next]] <= lowered.top().first)) {
+			i = order[next++];
+		}
+		else {
+			i                  = lowered.top().second;
+			const double value = lowered.top().first;
+			lowered.pop();
+			if (value > d[i])
+				continue;
+		}
+		for (Index k = m_neighbors.offsets[i]; k < m_neighbors.offsets[i + 1]; ++k) {
+			const Index  j     = m_neighbors.indices[k];
+			const double limit = d[i] + m_growth[k];
+			if (limit < d[j]) {
+				d[j] = limit;
+				lowered.emplace(limit, j);
+			}
+		}
+	}
+	return d;
 }
 
 double surfaceArea(const MinimumNeighborhoods& minimum)
@@ -95,10 +125,6 @@ double predictedCrossings(
 	}
 	return sum;
 }
-
-struct Bounds {
-	double least, most;
-};
 
 Bounds spacingBounds(
 	const MinimumNeighborhoods& minimum,
@@ -147,9 +173,11 @@ LineSpacing chooseLineSpacing(
 	LineSpacing result;
 	result.diagonal = diagonal;
 	result.epsilon  = options.epsilon * diagonal;
-	const auto at   = [&](double epsilon) {
-		return distances(
-			cloud, field, minimum, epsilon, bounds.least, bounds.most, options.gradation);
+	const GradedDistances graded(cloud, field, minimum, options.gradation);
+	const auto at = [&](double epsilon) {
+		std::array<std::vector<double>, 2> distance;
+		parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon, bounds); });
+		return distance;
 	};
 	if (crossings > 0.0) {
 		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);

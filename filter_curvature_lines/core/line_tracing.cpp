@@ -25,91 +25,63 @@ constexpr double ClosingSpread   = 30.0;  // the offset is spread over so many t
 constexpr int    RimBisections   = 5;
 constexpr Index  ReportEvery     = 1024;
 
-class Tracer {
-public:
-	Tracer(
-		const PointCloud&           cloud,
-		const CurvatureField&       field,
-		const MinimumNeighborhoods& minimum,
-		const UmbilicRegions&       umbilics,
-		const VoronoiCells&         cells,
-		const LineTracingOptions&   options,
-		const LineSpacing&          spacing);
+using Points = std::vector<FlowPoint>;
 
-	LineNetwork run(const Progress& progress);
+struct TracedLine {
+	Index                  seed; // its place among the seeds
+	Index                  size; // points
+	bool                   closed;
+	std::array<LineEnd, 2> ends;
+};
+
+// The lines of one family. Those of the other do not matter to it.
+class FamilyTracer {
+public:
+	FamilyTracer(
+		int                         family,
+		const PointCloud&           cloud,
+		const MinimumNeighborhoods& minimum,
+		const NeighborLists&        proximity,
+		const SurfaceFlow&          flow,
+		const LineTracingOptions&   options,
+		const LineSpacing&          spacing) :
+			m_family(family), m_cloud(cloud), m_flow(flow), m_options(options), m_diagonal(spacing.diagonal),
+			m_distance(spacing.distance[family - 1]), m_registry(cloud, minimum, proximity)
+	{
+	}
+
+	void run(const std::vector<Index>& seeds, const Progress& progress);
+
+	const std::vector<TracedLine>& lines() const { return m_lines; }
+	const Points&                  points() const { return m_points; }
+	const LineRegistry&            registry() const { return m_registry; }
 
 private:
-	using Points = std::vector<FlowPoint>;
-
-	bool               isSeed(Index i) const;
-	std::vector<Index> seedsByConfidence() const;
-	void               traceThrough(Index seed, const Progress& progress);
-	LineEnd            traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
-	void               reachOut(const FlowPoint& from, Points& half);
+	void     traceThrough(Index seed, Index place, const Progress& progress);
+	LineEnd  traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
+	void     reachOut(const FlowPoint& from, Points& half);
 	bool     occupied(const FlowPoint& point, bool approachesStart);
 	void     registerSegment(const FlowPoint& from, const FlowPoint& to);
 	void     closeUp(const FlowPoint& start, Points& half);
-	void     append(const Points& line, bool closed, const std::array<LineEnd, 2>& ends);
 
-	Index  currentLine() const { return static_cast<Index>(m_network.family.size()); }
-	double distance(Index cell) const { return m_spacing.distance[m_family - 1][cell]; }
+	Index  currentLine() const { return static_cast<Index>(m_lines.size()); }
+	double distance(Index cell) const { return m_distance[cell]; }
 
-	const PointCloud&           m_cloud;
-	const CurvatureField&       m_field;
-	const UmbilicRegions&       m_umbilics;
-	const LineTracingOptions&   m_options;
-	const LineSpacing&          m_spacing;
-	SurfaceFlow                 m_flow;
-	LineRegistry                m_registry;
+	const int                  m_family;
+	const PointCloud&          m_cloud;
+	const SurfaceFlow&         m_flow;
+	const LineTracingOptions&  m_options;
+	const double               m_diagonal;
+	const std::vector<double>& m_distance;
+	LineRegistry               m_registry;
 
-	// The half line being traced.
-	int    m_family = 1;
-	double m_side   = 1.0; // +1, then -1: arc lengths of the second half are negative
+	double m_side = 1.0; // of the half line being traced: +1, then -1: arc lengths of the second are negative
 
-	std::vector<FlowPoint> m_points; // of all finished lines
-	LineNetwork            m_network;
+	Points                  m_points; // of all finished lines
+	std::vector<TracedLine> m_lines;
 };
 
-Tracer::Tracer(
-	const PointCloud&           cloud,
-	const CurvatureField&       field,
-	const MinimumNeighborhoods& minimum,
-	const UmbilicRegions&       umbilics,
-	const VoronoiCells&         cells,
-	const LineTracingOptions&   options,
-	const LineSpacing&          spacing) :
-		m_cloud(cloud),
-		m_field(field),
-		m_umbilics(umbilics),
-		m_options(options),
-		m_spacing(spacing),
-		m_flow(cloud, field, minimum, umbilics, cells, {options.tolerance, options.projection}),
-		m_registry(cloud, minimum)
-{
-}
-
-bool Tracer::isSeed(Index i) const
-{
-	const PointStatus status = m_field.status[i];
-	if (status == PointStatus::TooFewNeighbors || status == PointStatus::Isolated ||
-		status == PointStatus::Invalid)
-		return false;
-	return !m_umbilics.singular[i] && (!m_umbilics.umbilic[i] || m_umbilics.region[i] >= 0);
-}
-
-std::vector<Index> Tracer::seedsByConfidence() const
-{
-	std::vector<Index> seeds;
-	for (Index i = 0; i < m_cloud.size(); ++i)
-		if (isSeed(i))
-			seeds.push_back(i);
-	std::stable_sort(seeds.begin(), seeds.end(), [&](Index a, Index b) {
-		return m_field.confidence[a] > m_field.confidence[b];
-	});
-	return seeds;
-}
-
-bool Tracer::occupied(const FlowPoint& point, bool approachesStart)
+bool FamilyTracer::occupied(const FlowPoint& point, bool approachesStart)
 {
 	const double   d = distance(point.cell);
 	ProximityQuery query;
@@ -127,13 +99,12 @@ bool Tracer::occupied(const FlowPoint& point, bool approachesStart)
 		query.ownFrom = point.arc + OwnArc * d;
 		query.ownTo   = HUGE_VAL;
 	}
-	return m_registry.occupied(m_family, query);
+	return m_registry.occupied(query);
 }
 
-void Tracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
+void FamilyTracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 {
 	m_registry.add(
-		m_family,
 		{from.position,
 		 to.position,
 		 (from.normal + to.normal).normalized(),
@@ -144,7 +115,7 @@ void Tracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 }
 
 // A step that ended beyond a rim or crease, again as far as it goes this side of it.
-void Tracer::reachOut(const FlowPoint& from, Points& half)
+void FamilyTracer::reachOut(const FlowPoint& from, Points& half)
 {
 	const double step = m_flow.step(from.cell);
 	FlowPoint    best, tried;
@@ -169,10 +140,10 @@ void Tracer::reachOut(const FlowPoint& from, Points& half)
 
 // Follows the field from `start` (not stored) until one of the stops of A09 section 5.1 and of ours: None if
 // the line came back to its start.
-LineEnd Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
+LineEnd FamilyTracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
 {
 	FlowPoint front = start, next;
-	while (std::abs(front.arc) < MaxLength * m_spacing.diagonal) {
+	while (std::abs(front.arc) < MaxLength * m_diagonal) {
 		const bool onwards = m_flow.advance(front, m_side, next);
 		if (!onwards || m_flow.leftCloud(next)) {
 			reachOut(front, half);
@@ -204,7 +175,7 @@ LineEnd Tracer::traceHalf(const FlowPoint& start, Points& half, const Progress& 
 }
 
 // The sideways offset of a closed line's end from its start, spread over the last stretch.
-void Tracer::closeUp(const FlowPoint& start, Points& half)
+void FamilyTracer::closeUp(const FlowPoint& start, Points& half)
 {
 	const FlowPoint last  = half.back();
 	const Vector3d  gap   = start.position - last.position;
@@ -221,7 +192,7 @@ void Tracer::closeUp(const FlowPoint& start, Points& half)
 	}
 }
 
-void Tracer::traceThrough(Index seed, const Progress& progress)
+void FamilyTracer::traceThrough(Index seed, Index place, const Progress& progress)
 {
 	FlowPoint start;
 	start.cell      = seed;
@@ -236,10 +207,10 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 	query.normal   = start.normal;
 	query.cell     = start.cell;
 	query.radius   = distance(start.cell);
-	if (m_registry.occupied(m_family, query))
+	if (m_registry.occupied(query))
 		return;
 
-	const Index  known = m_registry.size(m_family);
+	const Index  known = m_registry.size();
 	Points       line;
 	std::array<LineEnd, 2> ends;
 	ends[1]             = traceHalf(start, line, progress);
@@ -259,7 +230,7 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 		second.push_back(start);
 		line.insert(line.begin(), second.begin(), second.end());
 	}
-	m_registry.truncate(m_family, known);
+	m_registry.truncate(known);
 	if (line.back().arc - line.front().arc < distance(seed))
 		return; // too short to cross two lines of the other family
 	for (std::size_t k = 0; k + 1 < line.size(); ++k)
@@ -269,40 +240,70 @@ void Tracer::traceThrough(Index seed, const Progress& progress)
 		end.arc       = line.back().arc + (start.position - line.back().position).norm();
 		registerSegment(line.back(), end);
 	}
-	append(line, closed, ends);
-}
-
-void Tracer::append(const Points& line, bool closed, const std::array<LineEnd, 2>& ends)
-{
 	m_points.insert(m_points.end(), line.begin(), line.end());
-	m_network.offsets.push_back(static_cast<Index>(m_points.size()));
-	m_network.family.push_back(m_family);
-	m_network.closed.push_back(closed);
-	m_network.ends.push_back(ends);
+	m_lines.push_back({place, static_cast<Index>(line.size()), closed, ends});
 }
 
-LineNetwork Tracer::run(const Progress& progress)
+void FamilyTracer::run(const std::vector<Index>& seeds, const Progress& progress)
 {
-	const std::vector<Index> seeds = seedsByConfidence();
-	for (std::size_t k = 0; k < seeds.size(); ++k) {
-		const Progress here = progress.sub(double(k) / seeds.size(), 1.0, "Tracing lines");
+	const auto count = static_cast<Index>(seeds.size());
+	for (Index k = 0; k < count; ++k) {
+		const Progress here = progress.sub(double(k) / count, 1.0, "Tracing lines");
 		if (k % ReportEvery == 0)
 			here.report(0.0);
-		for (m_family = 1; m_family <= 2; ++m_family)
-			traceThrough(seeds[k], here);
+		traceThrough(seeds[k], k, here);
 	}
-	const Index count = static_cast<Index>(m_points.size());
-	m_network.vertices.resize(3, count);
-	m_network.normals.resize(3, count);
-	m_network.curvature.resize(count);
-	for (Index i = 0; i < count; ++i) {
-		m_network.vertices.col(i) = m_points[i].position;
-		m_network.normals.col(i)  = m_points[i].normal;
-		m_network.curvature[i]    = m_points[i].curvature;
+}
+
+bool isSeed(const CurvatureField& field, const UmbilicRegions& umbilics, Index i)
+{
+	const PointStatus status = field.status[i];
+	if (status == PointStatus::TooFewNeighbors || status == PointStatus::Isolated ||
+		status == PointStatus::Invalid)
+		return false;
+	return !umbilics.singular[i] && (!umbilics.umbilic[i] || umbilics.region[i] >= 0);
+}
+
+std::vector<Index> seedsByConfidence(const CurvatureField& field, const UmbilicRegions& umbilics)
+{
+	std::vector<Index> seeds;
+	for (Index i = 0; i < field.size(); ++i)
+		if (isSeed(field, umbilics, i))
+			seeds.push_back(i);
+	std::stable_sort(seeds.begin(), seeds.end(), [&](Index a, Index b) {
+		return field.confidence[a] > field.confidence[b];
+	});
+	return seeds;
+}
+
+// In the order of their seeds, the first family first.
+LineNetwork merged(const std::array<FamilyTracer, 2>& families)
+{
+	const auto  count = static_cast<Index>(families[0].points().size() + families[1].points().size());
+	LineNetwork network;
+	network.vertices.resize(3, count);
+	network.normals.resize(3, count);
+	network.curvature.resize(count);
+	std::array<std::size_t, 2> line = {0, 0}, point = {0, 0};
+	Index                      vertex = 0;
+	const auto more = [&](int f) { return line[f] < families[f].lines().size(); };
+	while (more(0) || more(1)) {
+		const bool second = !more(0) || (more(1) && families[1].lines()[line[1]].seed <
+														families[0].lines()[line[0]].seed);
+		const FamilyTracer& family = families[second];
+		const TracedLine&   next   = family.lines()[line[second]++];
+		for (Index k = 0; k < next.size; ++k, ++vertex) {
+			const FlowPoint& from        = family.points()[point[second]++];
+			network.vertices.col(vertex) = from.position;
+			network.normals.col(vertex)  = from.normal;
+			network.curvature[vertex]    = from.curvature;
+		}
+		network.offsets.push_back(vertex);
+		network.family.push_back(second ? 2 : 1);
+		network.closed.push_back(next.closed);
+		network.ends.push_back(next.ends);
 	}
-	m_network.epsilon   = m_spacing.epsilon;
-	m_network.crossings = m_registry.countCrossings(m_cloud.normals);
-	return std::move(m_network);
+	return network;
 }
 
 // A traced network within so much of the target is not traced again.
@@ -331,14 +332,25 @@ LineNetwork traceLines(
 	const LineTracingOptions&   options,
 	const Progress&             progress)
 {
+	const std::vector<Index> seeds     = seedsByConfidence(field, umbilics);
+	const NeighborLists      proximity = proximityGraph(minimum);
+	const SurfaceFlow        flow(
+		cloud, field, minimum, umbilics, cells, {options.tolerance, options.projection});
 	LineNetwork best;
 	double      bestMiss = HUGE_VAL, wanted = options.targetVertices;
 	const int   rounds   = options.targetVertices > 0 ? TargetRounds : 1;
 	for (int round = 0; round < rounds; ++round) {
 		const LineSpacing spacing = chooseLineSpacing(cloud, field, minimum, options, wanted);
-		Tracer      tracer(cloud, field, minimum, umbilics, cells, options, spacing);
-		LineNetwork network = tracer.run(
-			progress.sub(double(round) / rounds, double(round + 1) / rounds, "Tracing lines"));
+		std::array<FamilyTracer, 2> families = {
+			FamilyTracer(1, cloud, minimum, proximity, flow, options, spacing),
+			FamilyTracer(2, cloud, minimum, proximity, flow, options, spacing)};
+		parallelTasks(
+			2,
+			progress.sub(double(round) / rounds, double(round + 1) / rounds, "Tracing lines"),
+			[&](Index f, const Progress& part) { families[f].run(seeds, part); });
+		LineNetwork network = merged(families);
+		network.epsilon     = spacing.epsilon;
+		network.crossings   = families[0].registry().countCrossings(families[1].registry(), cloud.normals);
 		if (options.targetVertices <= 0)
 			return network;
 		const double found = std::max<Index>(1, network.crossings);

@@ -5,11 +5,22 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <thread>
+#include <vector>
+
+#include <omp.h>
 
 namespace curvature_lines {
+
+namespace {
+
+constexpr std::chrono::milliseconds reportInterval(100);
+
+}
 
 void Progress::report(double fraction) const
 {
@@ -32,7 +43,6 @@ Progress Progress::sub(double from, double to, const char* what) const
 void parallelFor(Index n, const Progress& progress, const std::function<void(Index)>& body)
 {
 	using Clock = std::chrono::steady_clock;
-	constexpr std::chrono::milliseconds reportInterval(100);
 	// Small enough to balance uneven bodies and to answer a cancellation soon, large enough that
 	// the shared counter costs nothing.
 	const std::int64_t chunk  = std::clamp<std::int64_t>(n / 512, 1, 128);
@@ -74,6 +84,63 @@ void parallelFor(Index n, const Progress& progress, const std::function<void(Ind
 	if (error)
 		std::rethrow_exception(error);
 	progress.report(1.0);
+}
+
+void parallelTasks(
+	Index n, const Progress& progress, const std::function<void(Index, const Progress&)>& task)
+{
+	const auto                       caller = std::this_thread::get_id();
+	std::vector<std::atomic<double>> reached(n);
+	std::atomic<bool>                stop{false};
+	Index                            finished = 0; // with error, under the mutex
+	std::exception_ptr               error;
+	std::mutex                       mutex;
+	std::condition_variable          oneFinished;
+
+	const auto report = [&] { progress.report(std::accumulate(reached.begin(), reached.end(), 0.0) / n); };
+	const auto run = [&](Index i) {
+		const Progress own([&, i](double fraction, const char*) {
+			reached[i] = fraction;
+			if (std::this_thread::get_id() == caller)
+				report();
+			return !stop;
+		});
+		std::exception_ptr failed;
+		try {
+			task(i, own);
+		}
+		catch (...) {
+			failed = std::current_exception();
+			stop   = true;
+		}
+		const std::lock_guard<std::mutex> lock(mutex);
+		if (failed && !error)
+			error = failed;
+		++finished;
+		oneFinished.notify_one();
+	};
+#pragma omp parallel num_threads(std::clamp(omp_get_max_threads(), 1, std::max(n, 1)))
+	{
+		// This schedule gives the calling thread, the first of the team, a task of its own.
+#pragma omp for schedule(static, 1) nowait
+		for (Index i = 0; i < n; ++i)
+			run(i);
+		if (std::this_thread::get_id() == caller) {
+			std::unique_lock<std::mutex> lock(mutex);
+			while (finished < n) {
+				oneFinished.wait_for(lock, reportInterval);
+				try {
+					report();
+				}
+				catch (...) {
+					error = std::current_exception();
+					stop  = true;
+				}
+			}
+		}
+	}
+	if (error)
+		std::rethrow_exception(error);
 }
 
 } // namespace curvature_lines

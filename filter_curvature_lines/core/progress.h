@@ -42,4 +42,9 @@ private:
 // exception thrown by a body is rethrown here.
 void parallelFor(Index n, const Progress& progress, const std::function<void(Index)>& body);
 
+// Runs a few long tasks side by side. Each reports to a progress of its own, from whatever thread it runs on:
+// the host hears of it on the calling thread, and a cancellation reaches them all when they report next.
+void parallelTasks(
+	Index n, const Progress& progress, const std::function<void(Index, const Progress&)>& task);
+
 } // namespace curvature_lines

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "core/line_intersections.h"
 #include "exact_field.h"
@@ -374,10 +375,15 @@ TEST(LineTracing, MeetsItsTarget)
 	}
 }
 
-TEST(LineTracing, TwoRunsAgreeToTheBit)
+TEST(LineTracing, AnyNumberOfThreadsAgreesToTheBit)
 {
-	const test::ExactCloud exact = test::exactCloud(request("ellipsoid", 2000));
-	const LineNetwork      a = trace(exact), b = trace(exact);
+	const test::ExactCloud exact   = test::exactCloud(request("ellipsoid", 2000));
+	const int              threads = omp_get_max_threads();
+	omp_set_num_threads(1);
+	const LineNetwork a = trace(exact);
+	omp_set_num_threads(4);
+	const LineNetwork b = trace(exact);
+	omp_set_num_threads(threads);
 	EXPECT_EQ(a.vertices, b.vertices);
 	EXPECT_EQ(a.offsets, b.offsets);
 	EXPECT_EQ(a.family, b.family);

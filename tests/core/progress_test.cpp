@@ -89,6 +89,58 @@ TEST(ParallelFor, CancelsEarly)
 	EXPECT_LT(done, 10000);
 }
 
+TEST(ParallelTasks, RunAllAndReportOnTheCallingThread)
+{
+	const auto caller = std::this_thread::get_id();
+	for (const int threads : {1, 2, 5}) {
+		const ThreadCount   set(threads);
+		std::vector<double> fractions;
+		const Progress      progress([&](double fraction, const char*) {
+            EXPECT_EQ(std::this_thread::get_id(), caller);
+            fractions.push_back(fraction);
+            return true;
+        });
+		for (const Index n : {0, 1, 2, 3}) {
+			std::vector<int> runs(n, 0);
+			parallelTasks(n, progress, [&](Index i, const Progress& own) {
+				own.report(0.5);
+				++runs[i];
+				own.report(1.0);
+			});
+			EXPECT_EQ(runs, std::vector<int>(n, 1));
+		}
+		EXPECT_GE(fractions.size(), 2u);
+		for (const double fraction : fractions)
+			EXPECT_TRUE(fraction >= 0.0 && fraction <= 1.0);
+	}
+}
+
+TEST(ParallelTasks, CancellationAndErrorsReachAll)
+{
+	for (const int threads : {1, 2, 4}) {
+		const ThreadCount set(threads);
+		int               asked = 0;
+		const Progress    progress([&](double, const char*) { return ++asked < 20; });
+		// Tasks that end only when told to; one ends early, so that its thread has nothing to report any more.
+		EXPECT_THROW(
+			parallelTasks(2, progress, [](Index i, const Progress& own) {
+				for (int k = 0; i == 1 || k < 3; ++k) {
+					own.report(0.1);
+					std::this_thread::sleep_for(std::chrono::milliseconds(1));
+				}
+			}),
+			Cancelled);
+		EXPECT_THROW(
+			parallelTasks(2, {}, [](Index i, const Progress& own) {
+				if (i == 0)
+					throw std::runtime_error("failed");
+				for (;;)
+					own.report(0.1);
+			}),
+			std::runtime_error);
+	}
+}
+
 TEST(Progress, SubStagesMapIntoTheirParent)
 {
 	double         last = -1.0;

@@ -145,17 +145,20 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 	// cos^2 psi = (1 + cos 2 psi) / 2, and w_ij cos 2 psi_ij is the real part of conj(u_i) H_ij
 	// u_j.
 	const Eigen::VectorXcd u = doubledAngles(theta);
-	const Eigen::VectorXcd y = m_coupling * u;
-	gradient.resize(theta.size());
-	double data = 0.0, agreement = 0.0;
-	for (Eigen::Index i = 0; i < theta.size(); ++i) {
-		const double  turn = theta[i] - m_theta0[i];
-		const Complex pair = std::conj(u[i]) * y[i]; // sum_j w_ij exp(-2 i psi_ij)
-		data += m_omega[i] * std::sin(turn) * std::sin(turn);
-		agreement += m_totalWeight[i] + pair.real();
+	const auto             n = static_cast<Index>(theta.size());
+	Eigen::VectorXd        data(n), agreement(n); // added up in order below, however many threads there are
+	gradient.resize(n);
+	parallelFor(n, {}, [&](Index i) {
+		const double turn = theta[i] - m_theta0[i];
+		Complex      sum  = 0.0; // sum_j H_ij u_j
+		for (Hermitian::InnerIterator entry(m_coupling, i); entry; ++entry)
+			sum += entry.value() * u[entry.col()];
+		const Complex pair = std::conj(u[i]) * sum; // sum_j w_ij exp(-2 i psi_ij)
+		data[i]            = m_omega[i] * std::sin(turn) * std::sin(turn);
+		agreement[i]       = m_totalWeight[i] + pair.real();
 		gradient[i] = (1.0 - m_alpha) * m_omega[i] * std::sin(2.0 * turn) - m_alpha * pair.imag();
-	}
-	return (1.0 - m_alpha) * data - m_alpha * 0.25 * agreement;
+	});
+	return (1.0 - m_alpha) * data.sum() - m_alpha * 0.25 * agreement.sum();
 }
 
 // With sin^2(theta - theta0) = |u - u0|^2 / 4 and -cos^2 psi = |u_i - e^(2 i phi) u_j|^2 / 4 - 1

@@ -119,14 +119,16 @@ void DirectionEnergy::buildCoupling(
 	m_totalWeight.resize(n);
 	parallelFor(n, progress.sub(0.5, 1.0, "Pairing directions"), [&](Index i) {
 		const auto         row    = pattern[i];
-		Complex*           values = m_coupling.valuePtr() + pattern.offsets[i];
+		auto*              values = m_coupling.valuePtr() + pattern.offsets[i];
 		const TangentFrame frame(cloud.normals.col(i));
 		m_totalWeight[i] = 0.0;
+		Index diagonal   = 0;
 		for (Index k = 0; k < row.size(); ++k) {
 			const Index j = row[k];
-			values[k]     = 0.0;
-			if (j == i)
+			if (j == i) {
+				diagonal = k;
 				continue;
+			}
 			// A row holds the point itself too: the degree is one less than its size.
 			const double w = 1.0 / (row.size() - 1) + 1.0 / (pattern[j].size() - 1);
 			const TangentFrame other(cloud.normals.col(j));
@@ -134,10 +136,16 @@ void DirectionEnergy::buildCoupling(
 			const double phi  = i < j ? transportAngle(frame, other) : -transportAngle(other, frame);
 			const double turn = 0.5 * (turning.col(i) + turning.col(j))
 										  .dot(cloud.positions.col(i) - cloud.positions.col(j));
-			values[k]        = std::polar(w, 2.0 * (phi + turn));
+			values[k] = std::complex<float>(-m_alpha * std::polar(w, 2.0 * (phi + turn)));
 			m_totalWeight[i] += w;
 		}
+		values[diagonal] = static_cast<float>(dataWeight(i) + m_alpha * m_totalWeight[i]);
 	});
+}
+
+double DirectionEnergy::dataWeight(Index i) const
+{
+	return (1.0 - m_alpha) * m_omega[i] + startShift;
 }
 
 double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const
@@ -150,15 +158,16 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 	gradient.resize(n);
 	parallelFor(n, {}, [&](Index i) {
 		const double turn = theta[i] - m_theta0[i];
-		Complex      sum  = 0.0; // sum_j H_ij u_j
+		Complex      sum  = 0.0; // -alpha sum_j H_ij u_j
 		for (Hermitian::InnerIterator entry(m_coupling, i); entry; ++entry)
-			sum += entry.value() * u[entry.col()];
-		const Complex pair = std::conj(u[i]) * sum; // sum_j w_ij exp(-2 i psi_ij)
+			if (entry.col() != i)
+				sum += Complex(entry.value()) * u[entry.col()];
+		const Complex pair = std::conj(u[i]) * sum; // -alpha sum_j w_ij exp(-2 i psi_ij)
 		data[i]            = m_omega[i] * std::sin(turn) * std::sin(turn);
-		agreement[i]       = m_totalWeight[i] + pair.real();
-		gradient[i] = (1.0 - m_alpha) * m_omega[i] * std::sin(2.0 * turn) - m_alpha * pair.imag();
+		agreement[i]       = m_alpha * m_totalWeight[i] - pair.real();
+		gradient[i] = (1.0 - m_alpha) * m_omega[i] * std::sin(2.0 * turn) + pair.imag();
 	});
-	return (1.0 - m_alpha) * data.sum() - m_alpha * 0.25 * agreement.sum();
+	return (1.0 - m_alpha) * data.sum() - 0.25 * agreement.sum();
 }
 
 // With sin^2(theta - theta0) = |u - u0|^2 / 4 and -cos^2 psi = |u_i - e^(2 i phi) u_j|^2 / 4 - 1
@@ -168,19 +177,16 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 // step of the inverse power method towards the smoothest field, started at the input.
 Eigen::VectorXd DirectionEnergy::linearStart() const
 {
-	using Single = std::complex<float>; // for a start single precision does, at half the memory
-	const Eigen::VectorXd data = ((1.0 - m_alpha) * m_omega).array() + startShift;
-	const Eigen::VectorXcd u0  = doubledAngles(m_theta0);
-
-	Eigen::SparseMatrix<Single, Eigen::RowMajor> system = m_coupling.cast<Single>();
-	system *= Single(static_cast<float>(-m_alpha));
-	system.diagonal() = (data + m_alpha * m_totalWeight).cast<Single>();
-	Eigen::ConjugateGradient<decltype(system), Eigen::Lower | Eigen::Upper> solver;
+	const auto             n  = static_cast<Index>(m_theta0.size());
+	const Eigen::VectorXcd u0 = doubledAngles(m_theta0);
+	Eigen::VectorXcf       right(n);
+	for (Index i = 0; i < n; ++i)
+		right[i] = std::complex<float>(dataWeight(i) * u0[i]);
+	Eigen::ConjugateGradient<Hermitian, Eigen::Lower | Eigen::Upper> solver;
 	solver.setMaxIterations(linearIterations);
 	solver.setTolerance(1e-5f);
-	solver.compute(system);
-	const Eigen::VectorXcd right = data.cwiseProduct(u0);
-	const Eigen::VectorXcf u     = solver.solveWithGuess(right.cast<Single>(), u0.cast<Single>());
+	solver.compute(m_coupling);
+	const Eigen::VectorXcf u = solver.solveWithGuess(right, u0.cast<std::complex<float>>());
 
 	Eigen::VectorXd theta = m_theta0;
 	for (Eigen::Index i = 0; i < theta.size(); ++i) {

@@ -48,18 +48,22 @@ public:
 	Eigen::VectorXd linearStart() const;
 
 private:
-	using Hermitian = Eigen::SparseMatrix<std::complex<double>, Eigen::RowMajor>;
+	// The largest thing in memory here, hence in single precision.
+	using Hermitian = Eigen::SparseMatrix<std::complex<float>, Eigen::RowMajor>;
 
 	void buildCoupling(
 		const PointCloud&       cloud,
 		const CurvatureField&   field,
 		const Eigen::Matrix3Xd& turning,
 		const Progress&         progress);
+	double dataWeight(Index i) const; // of the linear start
 
 	double          m_alpha;
 	Eigen::VectorXd m_theta0, m_omega;
 	Eigen::VectorXd m_totalWeight; // sum_j w_ij
-	Hermitian       m_coupling;    // w_ij exp(2 i phi_ij); theta_i - theta_j = phi_ij where parallel
+	// -alpha w_ij exp(2 i phi_ij), where theta_i - theta_j = phi_ij when parallel; the diagonal, which the energy
+	// does not know, makes it the system of the linear start.
+	Hermitian m_coupling;
 };
 
 } // namespace curvature_lines

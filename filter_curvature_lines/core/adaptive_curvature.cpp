@@ -312,12 +312,11 @@ void setWeights(
 	const RobustCurvatureOptions     published;
 	std::vector<std::vector<Index>>  rows(n);
 	std::vector<std::vector<double>> residuals(n);
-	parallelFor(n, progress, [&](Index k) {
+	parallelForPoints(search, progress, [&](Index i) {
 		thread_local std::vector<Index>                    foundScratch;
 		thread_local std::vector<std::pair<double, Index>> nearScratch;
 		auto&                 found = foundScratch;
 		auto&                 near  = nearScratch;
-		const Index           i   = search.spatialOrder()[k];
 		const SurfaceElement& own = surface.elements[i];
 		if (!own.valid)
 			return;

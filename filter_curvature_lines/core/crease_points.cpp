@@ -266,7 +266,7 @@ CreasePoints findCreasePoints(
 	result.noise = 1.4826 * medianInPlace(heights);
 
 	std::vector<std::vector<CreasePoint>> rows(n);
-	parallelFor(n, progress, [&](Index i) {
+	parallelForPoints(search, progress, [&](Index i) {
 		FacesAround& around = FacesAround::ofThisThread();
 		around.group(elements, search, i, result.noise, gate);
 		for (int face = 1; face < around.faces(); ++face) {

@@ -36,7 +36,7 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 		elements[i].valid    = true;
 	}
 	std::vector<Eigen::Matrix3d> shapes(cloud.size(), Eigen::Matrix3d::Zero());
-	parallelFor(cloud.size(), progress, [&](Index i) {
+	parallelForPoints(search, progress, [&](Index i) {
 		const SurfaceElement&    own    = elements[i];
 		const std::vector<Index> near   = search.nearest(own.position, shapeNeighbors);
 		const double             radius = 1.05 * (elements[near.back()].position - own.position).norm();

@@ -15,8 +15,7 @@ Eigen::Matrix3Xd gateNormals(
 	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
 {
 	Eigen::Matrix3Xd gate(3, cloud.size());
-	parallelFor(cloud.size(), progress, [&](Index k) {
-		const Index              i    = search.spatialOrder()[k];
+	parallelForPoints(search, progress, [&](Index i) {
 		const std::vector<Index> near = search.nearest(cloud.positions.col(i), gateNeighbors);
 		const Eigen::Vector3d    own  = cloud.normals.col(i);
 		Eigen::Vector3d          same = Eigen::Vector3d::Zero(), all = Eigen::Vector3d::Zero();

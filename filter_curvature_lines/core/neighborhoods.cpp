@@ -316,6 +316,13 @@ const std::vector<Index>& NeighborSearch::spatialOrder() const
 	return m_tree->index.vAcc; // leaf by leaf
 }
 
+void parallelForPoints(
+	const NeighborSearch& search, const Progress& progress, const std::function<void(Index)>& body)
+{
+	const std::vector<Index>& order = search.spatialOrder();
+	parallelFor(static_cast<Index>(order.size()), progress, [&](Index k) { body(order[k]); });
+}
+
 MinimumNeighborhoods minimumNeighborhoods(
 	const PointCloud&                 cloud,
 	const NeighborSearch&             search,
@@ -328,7 +335,7 @@ MinimumNeighborhoods minimumNeighborhoods(
 	std::vector<double> freeSpacing(n); // without a threshold on the distance
 	const auto          rowOf = [&](Index i) { return candidates.data() + std::size_t(i) * rowSize; };
 
-	parallelFor(n, progress.sub(0.0, 0.7, "Finding neighbors"), [&](Index i) {
+	parallelForPoints(search, progress.sub(0.0, 0.7, "Finding neighbors"), [&](Index i) {
 		Index* row = rowOf(i);
 		Index* end = row;
 		for (const Index j : search.nearest(cloud.positions.col(i), rowSize + 1))
@@ -345,7 +352,7 @@ MinimumNeighborhoods minimumNeighborhoods(
 	result.spacing.resize(n);
 	result.emptySlices.resize(n);
 	result.status.resize(n);
-	parallelFor(n, progress.sub(0.7, 1.0, "Finding neighborhoods"), [&](Index i) {
+	parallelForPoints(search, progress.sub(0.7, 1.0, "Finding neighborhoods"), [&](Index i) {
 		const Index* row = rowOf(i);
 		thread_local std::vector<double> local;
 		local.clear();

@@ -296,7 +296,7 @@ CurvatureField robustCurvature(
 	};
 	std::vector<CentreFits> centre(n);
 	if (options.featureGate && options.robust)
-		parallelFor(n, progress.sub(0.0, 0.2, "Looking for features"), [&](Index i) {
+		parallelForPoints(search, progress.sub(0.0, 0.2, "Looking for features"), [&](Index i) {
 			centre[i] = estimator().centreFits(i, cloud.normals.col(i));
 		});
 	const double commonScale = commonCentreScale(centre);
@@ -310,7 +310,7 @@ CurvatureField robustCurvature(
 	std::vector<std::vector<Index>>  rows(n);
 	std::vector<std::vector<double>> weights(n);
 	std::vector<Index>               iterations(n);
-	parallelFor(n, progress.sub(0.2, 1.0, "Estimating curvature"), [&](Index i) {
+	parallelForPoints(search, progress.sub(0.2, 1.0, "Estimating curvature"), [&](Index i) {
 		Estimate estimate = estimator().estimate(i, centre[i], commonScale);
 		if (estimate.valid && field.status[i] == PointStatus::TooFewNeighbors)
 			field.status[i] = PointStatus::Boundary;

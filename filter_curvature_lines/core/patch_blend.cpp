@@ -163,10 +163,9 @@ public:
 		const Progress&           progress);
 
 	void describeResiduals(PatchBlend& blend) const;
-	void blendAt(const std::vector<Index>& targets, PatchBlend& blend, const Progress& progress) const;
+	void blendAt(Index i, PatchBlend& blend) const;
 
 private:
-	void blendAt(Index i, PatchBlend& blend) const;
 	void findCovering(Index i, std::vector<Index>& found) const;
 
 	const BlendInput&       m_input;
@@ -175,7 +174,6 @@ private:
 	std::vector<Index>      m_points;  // of the centres
 	Eigen::Matrix3Xd        m_centers;
 	NeighborSearch          m_search; // of the centres
-	NeighborSearch          m_everyone;
 	std::vector<BlendPatch> m_patches;
 };
 
@@ -206,7 +204,6 @@ CoveringPatches::CoveringPatches(
 		m_points(centersOf(input, options)),
 		m_centers(columnsOf(guide.positions, m_points)),
 		m_search(m_centers),
-		m_everyone(guide.positions),
 		m_patches(m_centers.cols())
 {
 	std::vector<char>  used(m_patches.size(), 0);
@@ -219,9 +216,10 @@ CoveringPatches::CoveringPatches(
 			for (const Index j : found)
 				used[j] = 1;
 		}
-	parallelForPoints(m_search, progress, [&](Index c) {
+	const NeighborSearch search(guide.positions);
+	parallelFor(static_cast<Index>(m_patches.size()), progress, [&](Index c) {
 		if (used[c])
-			m_patches[c] = patchAt(input, guide, options, m_everyone, m_points[c]);
+			m_patches[c] = patchAt(input, guide, options, search, m_points[c]);
 	});
 }
 
@@ -301,18 +299,6 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 	blend.purity[i]   = pure / total;
 }
 
-void CoveringPatches::blendAt(
-	const std::vector<Index>& targets, PatchBlend& blend, const Progress& progress) const
-{
-	std::vector<char> asked(m_input.cloud.size(), 0);
-	for (const Index i : targets)
-		asked[i] = 1;
-	parallelForPoints(m_everyone, progress, [&](Index i) {
-		if (asked[i])
-			blendAt(i, blend);
-	});
-}
-
 } // namespace
 
 PatchBlend blendPatches(
@@ -331,7 +317,9 @@ PatchBlend blendPatches(
 	blend.residual.assign(n, std::numeric_limits<double>::infinity());
 	blend.purity.assign(n, 0.0);
 	patches.describeResiduals(blend);
-	patches.blendAt(targets, blend, progress.sub(0.7, 1.0, "Blending patches"));
+	parallelFor(static_cast<Index>(targets.size()), progress.sub(0.7, 1.0, "Blending patches"), [&](Index t) {
+		patches.blendAt(targets[t], blend);
+	});
 	return blend;
 }
 

@@ -88,7 +88,7 @@ RobustVote::RobustVote(
 		m_verdicts(size()),
 		m_rejected(size(), 0)
 {
-	parallelForPoints(m_search, progress.sub(0.0, 0.5, "Finding neighbors"), [&](Index i) {
+	parallelFor(size(), progress.sub(0.0, 0.5, "Finding neighbors"), [&](Index i) {
 		const auto nearest = m_search.nearest(m_positions.col(i), crowdSize + 1);
 		m_crowding[i]      = (m_positions.col(nearest.back()) - m_positions.col(i)).norm();
 	});
@@ -303,7 +303,7 @@ bool RobustVote::replaceRejected(const std::vector<char>& rejected)
 bool RobustVote::vote(const Progress& progress)
 {
 	collectVoters();
-	parallelForPoints(m_search, progress.sub(0.0, 0.9, "Voting"), [&](Index i) {
+	parallelFor(size(), progress.sub(0.0, 0.9, "Voting"), [&](Index i) {
 		thread_local Ballot ballot;
 		ballot.clear();
 		const Vector3d p = m_positions.col(i);

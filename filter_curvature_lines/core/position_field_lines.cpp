@@ -8,12 +8,16 @@
 
 #include <Eigen/SparseCholesky>
 
+#include "line_untangling.h"
+
 namespace curvature_lines {
 
 namespace {
 
 using Eigen::Vector3d;
 
+constexpr double sameFace      = 0.8; // dot product of normals
+constexpr Index  closestAsked  = 16;
 constexpr double unknownWeight = 1e-9; // for the arms as they are: the crosses are turned alike
 
 // Along the arms d1 of the crosses: how much they are the directions of family 1 (+1) and not 2 (-1), at every
@@ -145,6 +149,27 @@ std::vector<Chain> cut(Chain chain)
 	return parts;
 }
 
+// Unit normal of the triangles at an edge.
+Vector3d sideOf(const TriangleMesh& mesh, Index edge)
+{
+	Vector3d sum = Vector3d::Zero();
+	for (const Index t : {mesh.edges()[edge].left, mesh.edges()[edge].right})
+		if (t >= 0)
+			sum += mesh.areaVector(t);
+	return sum.normalized();
+}
+
+// Beside a crease the nearest point may be one of the other face: projected onto that, a line would turn back.
+Index closestOnSide(
+	const PointCloud& cloud, const NeighborSearch& search, const Vector3d& at, const Vector3d& side)
+{
+	const auto near = search.nearest(at, closestAsked);
+	for (const Index i : near)
+		if (cloud.normals.col(i).dot(side) > sameFace)
+			return i;
+	return near[0];
+}
+
 } // namespace
 
 LineNetwork linesOf(
@@ -170,11 +195,15 @@ LineNetwork linesOf(
 	std::vector<SurfaceSample> samples(joined.size());
 	const NeighborSearch       search(cloud.positions);
 	parallelFor(mesh.edgeCount(), {}, [&](Index e) {
+		const Vector3d side = sideOf(mesh, e);
 		for (std::size_t p = 0; p < curves.points[e].size(); ++p) {
 			const Vector3d at = mesh.vertices.col(mesh.edges()[e].from) + curves.points[e][p].t * mesh.along(e);
-			const Index    closest = search.nearest(at, 1)[0];
-			edgeOf[first[e] + p]   = e;
-			samples[first[e] + p]  = projectToSurface(cloud, curvature, at, closest, ProjectionKind::Mixed);
+			SurfaceSample& sample = samples[first[e] + p];
+			edgeOf[first[e] + p]  = e;
+			sample = projectToSurface(
+				cloud, curvature, at, closestOnSide(cloud, search, at, side), ProjectionKind::Mixed);
+			if (mesh.edges()[e].isRim() || scaffold.creaseEdge[e])
+				sample.position = at; // as the mesh has it
 		}
 	});
 	const auto endAt = [&](Index node) {
@@ -216,7 +245,7 @@ LineNetwork linesOf(
 		lines.closed.push_back(chain.closed);
 		lines.ends.push_back({end(chain.nodes.front()), end(chain.nodes.back())});
 	}
-	return lines;
+	return untangled(lines);
 }
 
 } // namespace curvature_lines

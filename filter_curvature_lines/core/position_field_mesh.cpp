@@ -79,8 +79,10 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	forScaffold.targetVertices          = options.targetVertices;
 	forScaffold.noise                   = options.noise;
 	forScaffold.closedRim               = options.mesh.closeHoles ? closedRim : 0.0;
-	Scaffold scaffold =
-		buildScaffold(cloud, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
+	// A front over points that keep their noise folds, and lines on it turn back and cross.
+	const PointCloud fitted = onFittedSurface(cloud, curvature);
+	Scaffold         scaffold =
+		buildScaffold(fitted, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
 	const TriangleMesh& mesh = scaffold.mesh;
 	result.scaffoldVertices  = mesh.vertexCount();
 	result.scaffoldEuler     = mesh.eulerCharacteristic();
@@ -92,7 +94,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 
 	std::vector<Rim> rims  = findRims(mesh);
 	DirectionGuide   guide = directionGuide(scaffold, curvature);
-	fitRims(rims, cloud, guide.normals, options.noise, scaffold);
+	fitRims(rims, fitted, guide.normals, options.noise, scaffold);
 	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
 	const CrossField       field     = smoothCrossField(mesh, guide);
 	result.singularTriangles         = field.singularTriangles();

@@ -29,7 +29,8 @@ struct PositionFieldMeshResult : QuadMeshResult {
 	LineNetwork lines; // if keepLines
 };
 
-// The cloud is clean and its normals those of the surface.
+// The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted around
+// them, if the field knows their heights; else the cloud is clean.
 PositionFieldMeshResult buildPositionFieldMesh(
 	const PointCloud&               cloud,
 	const CurvatureField&           curvature,

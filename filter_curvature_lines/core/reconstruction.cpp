@@ -82,7 +82,9 @@ void traceAndFill(
 		result.field.d2 = std::move(smoothed.d2);
 		clock.book("directions");
 	}
-	result.umbilics = findUmbilics(result.cloud, result.field, minimum, options.umbilics);
+	UmbilicOptions umbilics = options.umbilics;
+	umbilics.smoothed       = options.smoothDirections;
+	result.umbilics         = findUmbilics(result.cloud, result.field, minimum, umbilics);
 	clock.book("umbilics");
 	const VoronoiCells cells(
 		result.cloud.positions, progress.sub(0.2, 0.3, "Finding Voronoi cells"));

@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "quantile.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -25,6 +27,8 @@ constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
 constexpr double maxNormalTurn  = 0.5;  // tangent of the turn by which curvature may correct a normal
 constexpr double flatShare      = 1e-3; // see principalDirection()
 constexpr double slopeRidge     = 0.01; // of the slopes in tensorAt(), against points on a line
+constexpr double noisyShare     = 0.9;  // even if that much of the cloud has no noise, the rest counts
+constexpr double mostNoise      = 2.5;  // over that quantile: four standard deviations
 constexpr double maxBeside      = 1.0;  // kernel widths between c and the mean point that are extrapolated
 
 // The points with positive statistical weight at `closest`, and itself. Read in place: nothing is
@@ -275,6 +279,21 @@ Vector3d projectedPosition(
 }
 
 } // namespace
+
+PointCloud onFittedSurface(const PointCloud& cloud, const CurvatureField& field)
+{
+	PointCloud fitted = cloud;
+	if (field.height.size() == 0)
+		return fitted;
+	std::vector<double> sizes(field.height.size());
+	for (std::size_t i = 0; i < sizes.size(); ++i)
+		sizes[i] = std::abs(field.height[i]);
+	const double most = mostNoise * quantile(sizes, noisyShare);
+	for (std::size_t i = 0; i < sizes.size(); ++i)
+		if (sizes[i] <= most)
+			fitted.positions.col(i) += field.height[i] * cloud.normals.col(i);
+	return fitted;
+}
 
 SurfaceSample projectToSurface(
 	const PointCloud&     cloud,

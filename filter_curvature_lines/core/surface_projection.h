@@ -26,6 +26,11 @@ struct SurfaceSample {
 
 constexpr double rimOffset = 0.56; // 1 / sqrt(pi): of a half plane
 
+// The points where the surfaces fitted around them are, as far as these are known. Heights far beyond the
+// noise are left alone: they are those of stray points and of points next to a crease that took the normal of the other
+// face.
+PointCloud onFittedSurface(const PointCloud& cloud, const CurvatureField& field);
+
 // `closest`: the cloud point nearest to `position` (its Voronoi cell). The support are the points
 // with positive statistical weight there, and itself; opposing normals are left out. Where the
 // support is empty the closest point's own tangent plane serves. Never returns NaN.

@@ -23,6 +23,9 @@ constexpr double maxAxisCosine     = 0.9;  // an axis closer to a normal gives w
 constexpr double flatTurn          = 0.02; // radians over one operating region that count as flat
 constexpr double degenerateAxes    = 0.7;  // variances in this ratio: PCA axes are accidents of sampling
 constexpr double minFourfold       = 0.2;  // of the fourth moment: 0 for a disk, 0.43 for a square
+constexpr double continuedCosine   = 0.82; // 35 degrees from point to point; about a singular one are 60 or more
+// Points around a region over the root of those in it: a disk has 3.5, half of one at a rim 2.5.
+constexpr double leastBorder       = 2.0;
 constexpr double minFlatness       = 0.9;  // |mean normal| of a region that has a plane to speak of
 
 // A09: ratio above the threshold. The ratio is signed, so that minimal surfaces (k1 = -k2) are not
@@ -84,6 +87,7 @@ void labelRegions(
 		if (result.umbilic[i])
 			++size[sets.find(i)];
 	result.region.assign(n, -1);
+	result.regions = 0;
 	for (Index i = 0; i < n; ++i) {
 		const Index root = sets.find(i);
 		if (!result.umbilic[i] || size[root] < minRegion)
@@ -121,6 +125,33 @@ std::vector<Region> gatherRegions(
 		s.erase(std::unique(s.begin(), s.end()), s.end());
 	}
 	return regions;
+}
+
+// Clears the flags of regions that the directions around go on into. False: there is none.
+bool clearContinued(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	UmbilicRegions&             labels)
+{
+	const std::vector<Region> regions = gatherRegions(cloud, minimum, labels);
+	std::vector<char>         turns(regions.size(), 0);
+	forEachLink(cloud, minimum, [&](Index i, Index j) {
+		if (std::abs(field.d1.col(i).dot(field.d1.col(j))) < continuedCosine)
+			for (const Index r : {labels.region[i], labels.region[j]})
+				if (r >= 0)
+					turns[r] = 1;
+	});
+	bool any = false;
+	for (std::size_t r = 0; r < regions.size(); ++r) {
+		const Region& region = regions[r];
+		if (turns[r] || region.surroundings.size() < leastBorder * std::sqrt(double(region.points.size())))
+			continue;
+		any = true;
+		for (const Index i : region.points)
+			labels.umbilic[i] = 0;
+	}
+	return any;
 }
 
 // Principal axes of a region and its surroundings, by decreasing variance.
@@ -239,6 +270,8 @@ UmbilicRegions findUmbilics(
 	result.d2      = field.d2;
 	result.singular.assign(n, 0);
 	labelRegions(cloud, minimum, options.minRegion, result);
+	if (options.smoothed && clearContinued(cloud, field, minimum, result))
+		labelRegions(cloud, minimum, options.minRegion, result);
 	for (const Region& region : gatherRegions(cloud, minimum, result))
 		setDirections(cloud, region, regionAxis(cloud, region), result);
 	return result;

@@ -10,6 +10,7 @@ struct UmbilicOptions {
 	double ratio     = 0.95; // k_small / k_large (signed, by magnitude) above which a point is umbilic
 	double errors    = 2.5;  // also umbilic when |k1 - k2| is below this many standard errors
 	Index  minRegion = 4;    // regions of at least this many points get PCA directions (A09: "more than three")
+	bool   smoothed  = false; // the field's directions are: they lead where they can, see below
 };
 
 struct UmbilicRegions {
@@ -25,7 +26,9 @@ struct UmbilicRegions {
 
 // Same sign and ratio above options.ratio, or flat (both curvatures below 0.02 / (3 h) + 2 errors),
 // or statistically equal. Opposite signs are never umbilic by ratio. The flag is median-filtered
-// over the minimum neighbourhood.
+// over the minimum neighbourhood. Where estimates are uncertain, as at rims, the statistical test makes regions of
+// what only noise hides, and their axes are arbitrary. Smoothed directions come from the points around and know
+// better: regions that they go on into from most sides, without a singular point, are none.
 UmbilicRegions findUmbilics(
 	const PointCloud&           cloud,
 	const CurvatureField&       field,

@@ -124,7 +124,8 @@ FilterResults apply(const FilterContext& context)
 	const Parameters& parameters = context.parameters;
 	tracingOptions(parameters, 1.0); // complain before the long part
 	UmbilicOptions umbilicOptions;
-	umbilicOptions.ratio = umbilicRatio(parameters);
+	umbilicOptions.ratio    = umbilicRatio(parameters);
+	umbilicOptions.smoothed = parameters.flag("smooth_directions");
 
 	MeshModel&        cloudLayer = currentLayer(context.document);
 	const LayerPoints points     = readOrientedPoints(cloudLayer);

@@ -33,6 +33,7 @@ public:
 		m_lines.offsets.push_back(static_cast<Index>(m_vertices.size()));
 		m_lines.family.push_back(family);
 		m_lines.closed.push_back(closed);
+		m_lines.ends.push_back({LineEnd::None, LineEnd::None});
 		return *this;
 	}
 
@@ -119,6 +120,43 @@ inline LineNetwork greatCircles(int count, int segments, double noise, std::uint
 		});
 	}
 	return builder.lines();
+}
+
+// Pairs of segments of one family, on one face and without a common vertex, that cross in the tangent plane of the first.
+inline Index crossingsWithinFamilies(const LineNetwork& lines)
+{
+	struct Segment {
+		Index from, to;
+		int   family;
+	};
+	std::vector<Segment> segments;
+	for (Index l = 0; l < lines.lines(); ++l) {
+		const Index first = lines.offsets[l], last = lines.offsets[l + 1] - 1;
+		for (Index v = first; v < last; ++v)
+			segments.push_back({v, v + 1, lines.family[l]});
+		if (lines.closed[l])
+			segments.push_back({last, first, lines.family[l]});
+	}
+	const auto parted = [&](const Segment& a, const Segment& b, const Eigen::Vector3d& normal) {
+		const Eigen::Vector3d start = lines.vertices.col(a.from), along = lines.vertices.col(a.to) - start;
+		const auto            side  = [&](Index v) {
+            return along.cross(lines.vertices.col(v) - start).dot(normal);
+		};
+		return side(b.from) * side(b.to) < 0.0;
+	};
+	Index count = 0;
+	for (std::size_t s = 0; s < segments.size(); ++s)
+		for (std::size_t t = s + 1; t < segments.size(); ++t) {
+			const Segment&        a = segments[s];
+			const Segment&        b = segments[t];
+			const Eigen::Vector3d normal = lines.normals.col(a.from);
+			const double          reach  = (lines.vertices.col(a.to) - lines.vertices.col(a.from)).norm() +
+								 (lines.vertices.col(b.to) - lines.vertices.col(b.from)).norm();
+			count += a.family == b.family && a.from != b.to && a.to != b.from &&
+					 (lines.vertices.col(a.from) - lines.vertices.col(b.from)).norm() < reach &&
+					 normal.dot(lines.normals.col(b.from)) > 0.5 && parted(a, b, normal) && parted(b, a, normal);
+		}
+	return count;
 }
 
 } // namespace curvature_lines::tests

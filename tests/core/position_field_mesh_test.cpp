@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "estimated_field.h"
 #include "exact_field.h"
+#include "line_networks.h"
 #include "sample_data/analytic_surfaces.h"
 
 namespace curvature_lines {
@@ -143,6 +145,28 @@ TEST(PositionFieldMesh, LinesOfAnEllipsoidKeepTheirFamily)
 	EXPECT_GT(judged, 1000);
 	EXPECT_LT(wrong, 0.002 * judged); // 3 % when every curve was of one family
 	EXPECT_GT(closed, lines.lines() / 3);
+}
+
+// Half a spacing of noise: a scaffold over the points themselves is folded, and lines on it turned back and crossed.
+TEST(PositionFieldMesh, LinesOfANoisyCloudDoNotCross)
+{
+	for (const char* surface : {"ellipsoid", "helicoid", "cube"}) {
+		samples::SampleRequest noisy      = request(surface, 5000);
+		noisy.noise                       = 0.006;
+		const samples::SampleCloud sample = samples::generate(noisy);
+		test::EstimatedField       estimated =
+			test::estimateAdaptiveField(sample.positions, sample.normals);
+		PointCloud& cloud = estimated.prepared.cloud;
+		cloud.normals     = estimated.field.correctedNormals;
+		makeTangent(cloud.normals, estimated.field);
+		PositionFieldMeshOptions options;
+		options.targetVertices = 800;
+		options.keepLines      = true;
+		const PositionFieldMeshResult result = buildPositionFieldMesh(cloud, estimated.field, {}, options);
+		EXPECT_GT(result.lines.lines(), 40) << surface;
+		EXPECT_EQ(tests::crossingsWithinFamilies(result.lines), 0) << surface;
+		EXPECT_GT(result.scaffoldVertices, 1200) << surface; // about 740, thinned again and again, when it was folded
+	}
 }
 
 TEST(PositionFieldMesh, IsTheSameForAnyNumberOfThreads)

@@ -161,6 +161,33 @@ TEST(Umbilics, RatioIsTheThreshold)
 	EXPECT_EQ(count(umbilicsOf(exact, wider).umbilic), exact.cloud.size());
 }
 
+// Where estimates are in doubt the field goes on: the axes of such a region turned lines by 40 degrees.
+TEST(Umbilics, SmoothedDirectionsLeadThroughRegionsOfDoubt)
+{
+	ExactCloud exact = cleanCloud("helicoid");
+	exact.field.error.setZero();
+	for (Index i = 0; i < exact.cloud.size(); ++i)
+		if (exact.cloud.positions.col(i).head<2>().norm() > 0.7 && exact.cloud.positions(2, i) > 0.5)
+			exact.field.error[i] = 10.0; // at the rim
+	const Index doubtful = count(umbilicsOf(exact).umbilic);
+	EXPECT_GT(doubtful, 100);
+	UmbilicOptions smoothed;
+	smoothed.smoothed = true;
+	EXPECT_LT(count(umbilicsOf(exact, smoothed).umbilic), 10);
+	EXPECT_EQ(umbilicsOf(exact, smoothed).regions, 0);
+
+	// Not through umbilics: around those of an ellipsoid the directions turn, over the caps of a capsule they must.
+	for (const char* name : {"ellipsoid", "capsule", "sphere", "cube"}) {
+		ExactCloud umbilical = cleanCloud(name, 4000);
+		if (name == std::string("ellipsoid"))
+			umbilical.field.error = 0.3 * (umbilical.field.k1 - umbilical.field.k2).mean() * Eigen::VectorXd::Ones(umbilical.cloud.size());
+		const UmbilicRegions all = umbilicsOf(umbilical), left = umbilicsOf(umbilical, smoothed);
+		EXPECT_GT(all.regions, 0) << name;
+		EXPECT_EQ(left.region, all.region) << name;
+		EXPECT_EQ(left.d1, all.d1) << name;
+	}
+}
+
 TEST(Umbilics, SinglePointsAreFiltered)
 {
 	ExactCloud exact      = cleanCloud("torus");

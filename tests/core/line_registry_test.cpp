@@ -15,7 +15,8 @@ class LineRegistryTest : public testing::Test {
 protected:
 	test::ExactCloud exact = test::exactCloud({"torus", 1500});
 	double           h     = exact.minimum.medianSpacing;
-	LineRegistry     registry {exact.cloud, exact.minimum};
+	NeighborLists    proximity = proximityGraph(exact.minimum);
+	LineRegistry     registry {exact.cloud, exact.minimum, proximity};
 
 	// A straight piece of half a spacing along d1 or d2, starting at a cloud point.
 	FlowSegment segmentAt(Index i, int family, Index line, double arc) const
@@ -52,7 +53,7 @@ TEST_F(LineRegistryTest, OccupiedWhereASegmentIsWithinTheRadius)
 	for (Index i = 0; i < exact.cloud.size(); i += 97)
 		segments.push_back(segmentAt(i, 1, i, 0.0));
 	for (const FlowSegment& s : segments)
-		registry.add(1, s);
+		registry.add(s);
 	int occupied = 0;
 	for (Index i = 0; i < exact.cloud.size(); i += 3)
 		for (const double radius : {0.5 * h, 2.0 * h, 5.0 * h}) {
@@ -63,8 +64,7 @@ TEST_F(LineRegistryTest, OccupiedWhereASegmentIsWithinTheRadius)
 					nearest = std::min(nearest, distance(query.position, s));
 			if (std::abs(nearest - radius) < 1e-3 * h)
 				continue; // the oracle is sampled
-			EXPECT_EQ(registry.occupied(1, query), nearest < radius);
-			EXPECT_FALSE(registry.occupied(2, query));
+			EXPECT_EQ(registry.occupied(query), nearest < radius);
 			occupied += nearest < radius;
 		}
 	EXPECT_GT(occupied, 100);
@@ -72,56 +72,57 @@ TEST_F(LineRegistryTest, OccupiedWhereASegmentIsWithinTheRadius)
 
 TEST_F(LineRegistryTest, OwnSegmentsCountOnlyInTheirArcsAndRadius)
 {
-	registry.add(1, segmentAt(10, 1, 7, 2.0));
+	registry.add(segmentAt(10, 1, 7, 2.0));
 	ProximityQuery query = queryAt(10, 3.0 * h);
-	EXPECT_TRUE(registry.occupied(1, query));
+	EXPECT_TRUE(registry.occupied(query));
 	query.line      = 7;
 	query.ownRadius = h;
 	query.ownFrom   = 2.5;
 	query.ownTo     = 9.0;
-	EXPECT_FALSE(registry.occupied(1, query));
+	EXPECT_FALSE(registry.occupied(query));
 	query.ownFrom = 1.5;
-	EXPECT_TRUE(registry.occupied(1, query));
+	EXPECT_TRUE(registry.occupied(query));
 	query.ownRadius = 0.0;
-	EXPECT_FALSE(registry.occupied(1, query));
+	EXPECT_FALSE(registry.occupied(query));
 }
 
 TEST_F(LineRegistryTest, SheetsDoNotSeeEachOther)
 {
-	registry.add(1, segmentAt(10, 1, 0, 0.0));
+	registry.add(segmentAt(10, 1, 0, 0.0));
 	ProximityQuery query = queryAt(10, 3.0 * h);
 	query.normal         = -query.normal;
-	EXPECT_FALSE(registry.occupied(1, query));
+	EXPECT_FALSE(registry.occupied(query));
 }
 
 TEST_F(LineRegistryTest, TruncateTakesBack)
 {
-	registry.add(1, segmentAt(10, 1, 0, 0.0));
-	const Index kept = registry.size(1);
+	registry.add(segmentAt(10, 1, 0, 0.0));
+	const Index kept = registry.size();
 	for (Index i = 0; i < 200; ++i)
-		registry.add(1, segmentAt(i, 1, 1, 0.0));
-	registry.truncate(1, kept);
-	EXPECT_EQ(registry.size(1), kept);
-	EXPECT_TRUE(registry.occupied(1, queryAt(10, 0.1 * h)));
+		registry.add(segmentAt(i, 1, 1, 0.0));
+	registry.truncate(kept);
+	EXPECT_EQ(registry.size(), kept);
+	EXPECT_TRUE(registry.occupied(queryAt(10, 0.1 * h)));
 	for (Index i = 0; i < exact.cloud.size(); ++i)
 		if ((exact.cloud.positions.col(i) - exact.cloud.positions.col(10)).norm() > 2.0 * h) {
-			EXPECT_FALSE(registry.occupied(1, queryAt(i, h)));
+			EXPECT_FALSE(registry.occupied(queryAt(i, h)));
 		}
-	registry.truncate(1, 0);
-	EXPECT_FALSE(registry.occupied(1, queryAt(10, 5.0 * h)));
+	registry.truncate(0);
+	EXPECT_FALSE(registry.occupied(queryAt(10, 5.0 * h)));
 }
 
 TEST_F(LineRegistryTest, CountsEachCrossingOnce)
 {
+	LineRegistry other {exact.cloud, exact.minimum, proximity};
 	// Two segments through the middle between two points: both registered with the same two cells.
 	for (Index i = 0; i < exact.cloud.size(); i += 151) {
 		const FlowSegment along = segmentAt(i, 1, 0, 0.0);
 		const Vector3d    middle = 0.5 * (along.from + along.to);
 		const Vector3d    across = 0.2 * h * exact.field.d2.col(i);
-		const Index       before = registry.countCrossings(exact.cloud.normals);
-		registry.add(1, along);
-		registry.add(2, {middle - across, middle + across, along.normal, along.fromCell, along.toCell, 1, 0.0});
-		EXPECT_EQ(registry.countCrossings(exact.cloud.normals), before + 1);
+		const Index       before = registry.countCrossings(other, exact.cloud.normals);
+		registry.add(along);
+		other.add({middle - across, middle + across, along.normal, along.fromCell, along.toCell, 1, 0.0});
+		EXPECT_EQ(registry.countCrossings(other, exact.cloud.normals), before + 1);
 	}
 }
 

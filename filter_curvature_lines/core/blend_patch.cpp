@@ -21,6 +21,8 @@ constexpr double maxGate         = 2.0;  // gate widths
 constexpr double heightCutoff    = 5.0;  // noise units
 constexpr double growth[]        = {1.0 / 3.0, 0.6, 1.0, 1.0};
 constexpr double maxPurityExcess = 40.0;
+constexpr double farthestNoise   = 10.0; // that a point is from its surface, in noise units
+constexpr double farthestSpacing = 0.05; // and spacings
 
 struct Scratch {
 	std::vector<Index>    near;
@@ -176,6 +178,11 @@ double purityOf(const SurfacePatch& patch, double noise, double rate)
 }
 
 } // namespace
+
+double farthestMove(const BlendInput& input, Index i)
+{
+	return farthestNoise * input.noise[i] + farthestSpacing * input.spacing[i];
+}
 
 // Guides of the other supports have left the noise behind.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)

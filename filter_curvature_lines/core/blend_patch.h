@@ -33,7 +33,7 @@ struct BlendOptions {
 	std::vector<double> radius; // per point, of a patch there, smooth: a length
 	double  gateWidth  = 0.7; // Gated: deviation from the linear normal that quarters a weight
 	double  purity     = 0.0; // how fast a patch loses weight as its residuals exceed the noise
-	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: no limit
+	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: any is taken
 	bool    edges      = false; // Gated: points beside an edge also see the faces beyond it
 	double  overlap    = 38.0; // patches that cover a point, on average
 };
@@ -64,6 +64,9 @@ Sight bentSight(
 	const Eigen::Vector3d& height,
 	const Eigen::Vector3d& place,
 	const Eigen::Vector3d& normal);
+
+// Noise carries no point farther from its surface.
+double farthestMove(const BlendInput& input, Index i);
 
 // Geman-McClure weight of a squared residual in units of its width; 0 beyond two widths.
 double gateWeight(double e2);

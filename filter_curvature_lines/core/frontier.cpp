@@ -22,11 +22,12 @@ using Eigen::Vector3d;
 // pull it on.
 constexpr double blurs[]         = {0.7, 0.35, 0.2};
 constexpr double narrowestWindow = 20.0;
-constexpr double widestWindow    = 60.0;
+constexpr double widestWindow    = 155.0;
 
 constexpr double windowGrowth = 1.5;
 constexpr double strays       = 1e-6; // how often a point lies anywhere
 constexpr double agreement    = 6.0;  // of windows, in standard errors
+constexpr double sufficient   = 0.1;  // error, beyond which a wider window only risks more
 constexpr Index  fewestPoints = 8;
 constexpr int    mostSteps    = 60;
 constexpr int    mostHalvings = 12;
@@ -34,7 +35,7 @@ constexpr double longestStep  = 1.0; // blurs
 // A blur that the sample does not have puts the end of an even one where the normal distribution function is
 // 1 / e: this many blurs further in.
 constexpr double blurBias = 0.337;
-constexpr double certain  = 8.0; // blurs inside: the density is full
+constexpr double certain  = 6.0; // blurs inside: the density is full
 
 // log(Phi(z) + strays) and its derivatives, those of the logarithm as if the point's being a stray were known, by
 // how probable it is that it is none.
@@ -75,11 +76,9 @@ struct Likelihood {
 	{
 		double value = (*this)(c);
 		for (int step = 0; step < mostSteps; ++step) {
-			Vector3d gradient = -area;
-			for (Index i = 0; i < x.size(); ++i)
-				gradient +=
-					PointTerm((basis.col(i).dot(c) - x[i]) / blur).first / blur * basis.col(i);
-			const Vector3d ascent = information(c).ldlt().solve(gradient);
+			Vector3d       gradient = -area;
+			const Matrix3d told     = information(c, &gradient);
+			const Vector3d ascent   = told.ldlt().solve(gradient);
 			// Bounded, because far inside, where all points are strays to it, the likelihood grows again.
 			double share = std::min(1.0, longestStep * blur / ascent.cwiseAbs().maxCoeff());
 			double next  = (*this)(c + share * ascent);
@@ -95,13 +94,20 @@ struct Likelihood {
 		return c;
 	}
 
-	// What the points tell about the coefficients, and a trace for those they tell nothing about.
-	Matrix3d information(const Vector3d& c) const
+	// What the points tell about the coefficients, and a trace for those they tell nothing about. Adds to the
+	// gradient what is theirs of it.
+	Matrix3d information(const Vector3d& c, Vector3d* gradient = nullptr) const
 	{
 		Matrix3d sum = Matrix3d::Zero();
-		for (Index i = 0; i < x.size(); ++i)
-			sum -= PointTerm((basis.col(i).dot(c) - x[i]) / blur).second / (blur * blur) *
-				   basis.col(i) * basis.col(i).transpose();
+		for (Index i = 0; i < x.size(); ++i) {
+			const double z = (basis.col(i).dot(c) - x[i]) / blur;
+			if (z > certain)
+				continue;
+			const PointTerm term(z);
+			sum -= term.second / (blur * blur) * basis.col(i) * basis.col(i).transpose();
+			if (gradient)
+				*gradient += term.first / blur * basis.col(i);
+		}
 		return sum + Matrix3d::Identity() * std::max(1e-6 * sum.trace(), 1e-12);
 	}
 
@@ -174,7 +180,7 @@ fitFrontier(const Eigen::Matrix2Xd& points, double begin, double end, double den
 			low  = std::max(low, fit->value - agreement * fit->deviation);
 			high = std::min(high, fit->value + agreement * fit->deviation);
 		}
-		if (a == from && b == to)
+		if ((a == from && b == to) || (best && best->deviation < sufficient))
 			break;
 	}
 	if (best) {

@@ -113,11 +113,15 @@ Prediction predictBent(
 	return p;
 }
 
-double acceptance(const BlendOptions& options, double residual, double noise)
+// A patch too far away is one of another face, and would else be all there is to hear where those of the point's
+// own face reach over an edge.
+double acceptance(const BlendInput& input, const BlendOptions& options, double residual, Index i)
 {
-	if (options.acceptance <= 0.0 || !(noise > 0.0))
+	if (options.acceptance <= 0.0 || !(input.noise[i] > 0.0))
 		return 1.0;
-	const double e = residual / (options.acceptance * noise);
+	if (std::abs(residual) > farthestMove(input, i))
+		return 0.0;
+	const double e = residual / (options.acceptance * input.noise[i]);
 	return 1.0 / ((1.0 + e * e) * (1.0 + e * e));
 }
 
@@ -270,7 +274,7 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 		const double w = p.weight * p.gate * patch.purity;
 		if (w <= 0.0)
 			continue;
-		const double a = w * acceptance(m_options, p.residual, noise);
+		const double a = w * acceptance(m_input, m_options, p.residual, i);
 		total += p.weight * p.gate;
 		pure += w;
 		residual += w * p.residual;

@@ -1,4 +1,5 @@
-// The frontier of the cloud as seen from each vertex of a rim.
+// The frontier of the cloud as seen from each vertex of a rim, in the plane onto which the strip beside it unrolls:
+// a projection would bend and crowd what is far, and corners, which see one side, need to look far.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rim_fit.h"
 
@@ -14,16 +15,22 @@ namespace curvature_lines {
 
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr Index  longestReach = 40; // of the part of a rim that tells where it lies, to either side
-constexpr Index  sideReach    = 6;  // of the direction in which a side meets a corner
-constexpr double sameCourse   = 0.6; // cosine of the turn
-constexpr double sameSheet    = 0.5; // cosine of normals
-constexpr double depth        = 4.0; // points so near are looked at; these in vertex spacings
-constexpr double bandDepth    = 3.0; // the density is that of the points from a gap to this
-constexpr double mostGap      = 2.0;
-constexpr double mostOffset   = 1.5;
+constexpr Index  longestReach  = 90; // of the part of a rim that tells where it lies, to either side
+constexpr Index  shortestReach = 12;
+constexpr double mostWinding   = 1.0; // of that part about a circle, RMS
+constexpr double sameCourse    = -0.5; // cosine of its turn
+constexpr Index  chordReach    = 4; // of chords whose turn it is
+constexpr Index  sideReach     = 6; // of the direction in which a side meets a corner
+constexpr Index  aroundCorner  = 5; // beside so many vertices lie points of the other side
+constexpr double sameSheet     = 0.5; // cosine of normals
+constexpr double depth         = 4.0; // points so near are looked at; these in vertex spacings
+constexpr double bandDepth     = 3.0; // the density is that of the points from a gap to this
+constexpr double mostGap       = 2.0;
+constexpr double leastBand     = 0.5; // its length over the rim's
+constexpr double mostOffset    = 1.5;
 constexpr double mostCornerOffset = 4.0;
 constexpr double straight         = 0.9; // cosine of the turn of a corner that is none
 constexpr int    fitSteps         = 3;   // each sees sides and corners where the last put them
@@ -37,16 +44,84 @@ struct View {
 			outward(tangent.cross(normal))
 	{
 	}
-	Eigen::Vector2d of(const Vector3d& p) const
+	Vector2d of(const Vector3d& p) const
 	{
 		return {(p - origin).dot(tangent), (p - origin).dot(outward)};
 	}
 	Vector3d at(double s, double x) const { return origin + s * tangent + x * outward; }
+
+	// From another vertex, turned no more than the normal.
+	View moved(const Vector3d& to, const Vector3d& normal) const
+	{
+		const auto turn = Eigen::Quaterniond::FromTwoVectors(outward.cross(tangent), normal);
+		View       next = *this;
+		next.origin     = to;
+		next.tangent    = turn * tangent;
+		next.outward    = turn * outward;
+		return next;
+	}
+
+	void turn(double slope)
+	{
+		const Vector3d along = (tangent + slope * outward).normalized();
+		outward              = (outward - slope * tangent).normalized();
+		tangent              = along;
+	}
 };
 
-// Part of a rim around one vertex, up to corners and to where it has turned away.
-struct Reach {
-	Index behind = 0, ahead = 0; // vertices
+// A circle through the origin of a plane, there about in the direction of its first axis. Straightens what lies
+// along it: the end of a surface that is bent as a parabola is only for a short way is then nearly straight.
+struct Circle {
+	double slope = 0.0, curvature = 0.0;
+	double winding = 0.0; // RMS distance of what it was found for
+
+	// Along it, and how far to its left.
+	Vector2d of(const Vector2d& point) const
+	{
+		const double   length = std::sqrt(1.0 + slope * slope);
+		const Vector2d p(
+			(point.x() + slope * point.y()) / length, (point.y() - slope * point.x()) / length);
+		const double across = 2.0 * p.y() - curvature * p.squaredNorm();
+		const double share  = std::sqrt(std::max(0.0, 1.0 - curvature * across)); // of the radius
+		const double angle  = std::atan2(curvature * p.x(), 1.0 - curvature * p.y());
+		const double along  = std::abs(angle) > 1e-6 ? angle / curvature : p.x();
+		return {along, across / (1.0 + share)};
+	}
+};
+
+// The one beside points by algebraic least squares, moved to the origin.
+Circle circleAlong(const std::vector<Vector2d>& points)
+{
+	double scale = 0.0;
+	for (const Vector2d& p : points)
+		scale = std::max(scale, p.norm());
+	Eigen::Matrix3d left  = Eigen::Matrix3d::Zero();
+	Vector3d        right = Vector3d::Zero();
+	for (const Vector2d& p : points) {
+		const Vector2d u = p / scale;
+		const Vector3d row(1.0, u.x(), 0.5 * u.squaredNorm());
+		left += row * row.transpose();
+		right += u.y() * row;
+	}
+	const Vector3d c      = left.ldlt().solve(right);
+	const double   square = 1.0 + c[1] * c[1] + 2.0 * c[0] * c[2];
+	Circle         circle;
+	if (c.allFinite() && square > 0.0) {
+		circle.slope     = c[1];
+		circle.curvature = c[2] / (scale * std::sqrt(square));
+	}
+	Eigen::VectorXd across(points.size());
+	for (std::size_t i = 0; i < points.size(); ++i)
+		across[i] = circle.of(points[i]).y();
+	circle.winding = std::sqrt((across.array() - across.mean()).square().mean());
+	return circle;
+}
+
+// Part of a rim around one vertex: the strip beside it unrolled into the plane, the rim about along the first axis.
+struct Strip {
+	std::vector<Vector2d> rim, points;
+	Vector2d              begin = Vector2d::Zero(), end = Vector2d::Zero(); // of the rim
+	double                density = 0.0; // of points
 };
 
 // The rims of a scaffold with the cloud beside them.
@@ -90,6 +165,17 @@ private:
 		Index rim, k;
 	};
 
+	// In which the density is measured: past what noise and voids do at the rim.
+	struct Band {
+		double points = 0.0, length = 0.0;
+
+		void operator+=(const Band& other)
+		{
+			points += other.points;
+			length += other.length;
+		}
+	};
+
 	// Gives every point near a rim to the vertex next to it.
 	void assignPoints()
 	{
@@ -109,8 +195,11 @@ private:
 			if (owner[j] >= 0)
 				m_beside[owner[j]].push_back(j);
 		m_inBand.assign(m_positions.cols(), 0);
+		m_besideCorner.assign(m_positions.cols(), 0);
 		for (const Place& place : m_places) {
 			const Rim& rim = m_rims[place.rim];
+			for (Index m = -aroundCorner; m <= aroundCorner; ++m)
+				m_besideCorner[rim.at(place.k)] |= rim.isCorner(place.k + m);
 			const View view(
 				position(rim, place.k),
 				position(rim, place.k + 1) - position(rim, place.k - 1),
@@ -122,63 +211,101 @@ private:
 		}
 	}
 
-	// Of the band in which the density is measured from the rim: past what noise and voids do there.
 	double gap() const { return std::min(m_spacing + 2.0 * m_noise, mostGap * m_spacing); }
 
 	Index vertexAt(std::size_t i) const { return m_rims[m_places[i].rim].at(m_places[i].k); }
 
 	Vector3d position(const Rim& rim, Index k) const { return m_positions.col(rim.at(k)); }
 
-	Reach reachOf(const Rim& rim, Index k, const View& view) const
+	// Up to corners, to where the rim has turned away, and to `most` vertices; ahead (side 1), behind (-1) or
+	// both (0).
+	Strip unrolled(const Rim& rim, Index k, const View& view, int side, Index most) const
 	{
-		const Index most   = std::min(longestReach, rim.size() / 4);
-		const auto  extent = [&](Index step) {
-			Index m = 0;
-			while (m < most) {
-				const Index    here = k + step * m;
-				const Vector3d edge = position(rim, here + step) - position(rim, here);
-				const bool turned   = step * edge.normalized().dot(view.tangent) < sameCourse;
-				if (m > 0 && (rim.isCorner(here) || turned))
-					break;
-				++m;
-			}
-			return m;
+		Strip      strip;
+		const auto addPoints = [&](Index here, const View& local, const Vector2d& at) {
+			for (const Index j : m_beside[rim.at(here)])
+				strip.points.push_back(at + local.of(m_cloud.positions.col(j)));
 		};
-		return {extent(-1), extent(1)};
+		strip.rim.push_back(Vector2d::Zero());
+		addPoints(k, view, Vector2d::Zero());
+		Band all, clear; // beside corners a part of the band is the other side's
+		for (const Index step : {-1, 1}) {
+			View                  local = view;
+			std::vector<Vector2d> course(1, Vector2d::Zero());
+			// Points of this side lie beside the first vertices beyond its corner too.
+			bool  beyond = side == -step;
+			Index last   = beyond ? aroundCorner : most;
+			for (Index m = 1; m <= last; ++m) {
+				const Index    here = k + step * m, before = here - step;
+				const View     next = local.moved(position(rim, here), m_normals.col(rim.at(here)));
+				const Vector2d to =
+					course.back() + 0.5 * (local.of(next.origin) - next.of(local.origin));
+				const Vector2d chord = to - course[std::max<Index>(0, m - chordReach)];
+				if (!beyond && m > 1 && !(step * chord.normalized().x() > sameCourse))
+					break;
+				local = next;
+				course.push_back(to);
+				addPoints(here, local, to);
+				if (beyond)
+					continue;
+				strip.rim.push_back(to);
+				(step < 0 ? strip.begin : strip.end) = to;
+				const Band between{
+					0.5 * (m_inBand[rim.at(here)] + m_inBand[rim.at(before)]),
+					(position(rim, here) - position(rim, before)).norm()};
+				all += between;
+				if (!m_besideCorner[rim.at(here)] && !m_besideCorner[rim.at(before)])
+					clear += between;
+				if (rim.isCorner(here)) {
+					beyond = true;
+					last   = m + aroundCorner;
+				}
+			}
+		}
+		const Band& band = clear.length > 0.0 ? clear : all;
+		strip.density    = band.points / (band.length * (bandDepth * m_spacing - gap()));
+		return strip;
 	}
 
-	// Where the surface ends as seen from a vertex.
-	std::optional<Frontier>
-	frontierOf(const Rim& rim, Index k, const View& view, const Reach& reach) const
+	// Where the surface ends as seen from a vertex along the longest part of the rim that follows a circle; turns
+	// the view along that.
+	std::optional<Frontier> frontierOf(const Rim& rim, Index k, View& view, int side) const
 	{
-		std::vector<Eigen::Vector2d> seen;
-		double                       inBand = 0.0, length = 0.0;
-		for (Index m = k - reach.behind; m <= k + reach.ahead; ++m) {
-			for (const Index j : m_beside[rim.at(m)])
-				seen.push_back(view.of(m_cloud.positions.col(j)));
-			if (m == k - reach.behind || m == k + reach.ahead) // only half beside the part
-				continue;
-			inBand += m_inBand[rim.at(m)];
-			length += 0.5 * (position(rim, m + 1) - position(rim, m)).norm() +
-					  0.5 * (position(rim, m) - position(rim, m - 1)).norm();
+		Index  reach  = std::min(longestReach, rim.size() / 4);
+		Strip  strip  = unrolled(rim, k, view, side, reach);
+		Circle circle = circleAlong(strip.rim);
+		while (circle.winding > mostWinding * m_spacing && reach > shortestReach) {
+			reach  = 2 * reach / 3;
+			strip  = unrolled(rim, k, view, side, reach);
+			circle = circleAlong(strip.rim);
 		}
-		const double density = inBand / (length * (bandDepth * m_spacing - gap()));
+		// The band lies deeper than the rim, and where this bends around it is shorter.
+		const double middle = 0.5 * (gap() + bandDepth * m_spacing);
+		const double density =
+			strip.density / std::max(leastBand, 1.0 + circle.curvature * middle);
 		if (!(density > 0.0) || !std::isfinite(density))
 			return {};
+		view.turn(circle.slope);
+		Eigen::Matrix2Xd seen(2, strip.points.size());
+		Index            count = 0;
+		for (const Vector2d& p : strip.points) {
+			seen.col(count) = circle.of(p);
+			count += seen(1, count) > -depth * m_spacing;
+		}
 		return fitFrontier(
-			Eigen::Map<const Eigen::Matrix2Xd>(seen[0].data(), 2, seen.size()),
-			view.of(position(rim, k - reach.behind)).x(),
-			view.of(position(rim, k + reach.ahead)).x(),
+			seen.leftCols(count),
+			circle.of(strip.begin).x(),
+			circle.of(strip.end).x(),
 			density,
 			m_noise);
 	}
 
 	Vector3d fitted(const Rim& rim, Index k) const
 	{
-		const View view(position(rim, k), rim.tangent(k, m_positions), m_normals.col(rim.at(k)));
+		View view(position(rim, k), rim.tangent(k, m_positions), m_normals.col(rim.at(k)));
 		if (!view.tangent.allFinite())
 			return view.origin;
-		const auto   frontier = frontierOf(rim, k, view, reachOf(rim, k, view));
+		const auto   frontier = frontierOf(rim, k, view, 0);
 		const double most     = mostOffset * m_spacing;
 		return view.at(0.0, frontier ? std::clamp(frontier->value, -most, most) : 0.0);
 	}
@@ -190,16 +317,14 @@ private:
 		const Vector3d start = position(rim, k), normal = m_normals.col(rim.at(k));
 		Vector3d       p[2], d[2];
 		for (const Index side : {0, 1}) {
-			const View view(
+			View view(
 				start,
 				side == 0 ? start - position(rim, k - sideReach)
 						  : position(rim, k + sideReach) - start,
 				normal);
 			if (!view.tangent.allFinite())
 				return start;
-			Reach reach                              = reachOf(rim, k, view);
-			(side == 0 ? reach.ahead : reach.behind) = 0;
-			const auto frontier                      = frontierOf(rim, k, view, reach);
+			const auto frontier = frontierOf(rim, k, view, side == 0 ? -1 : 1);
 			if (!frontier)
 				return start;
 			p[side] = view.at(0.0, frontier->value);
@@ -224,7 +349,8 @@ private:
 	Eigen::Matrix3Xd&               m_positions;
 	std::vector<Place>              m_places;
 	std::vector<std::vector<Index>> m_beside; // of every vertex: points of the cloud
-	std::vector<Index>              m_inBand; // how many of them tell the density
+	std::vector<Index>              m_inBand; // of every vertex: how many of them
+	std::vector<char>               m_besideCorner;
 };
 
 } // namespace

@@ -58,8 +58,6 @@ constexpr double mildPurity      = 1.0;
 constexpr double pilotAcceptance = 2.0; // noise units
 constexpr double gatedAcceptance = 3.0;
 constexpr double sharpPurity     = 0.5; // of smooth patches, below which edges are looked for
-constexpr double farthestNoise   = 10.0; // that a point is moved, in noise units
-constexpr double farthestSpacing = 0.05; // and spacings
 constexpr double sameSide        = 1e-3; // least weight of a neighbour across an edge
 constexpr Index  gainNeighbors   = 24;
 constexpr double smoothGain      = 0.1; // of a squared residual by gates: below it the gate only costs
@@ -445,14 +443,12 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 	}
 }
 
-// Noise does not carry a point so far: it is an outlier, or was taken for one of another face.
+// It is an outlier, or was taken for one of another face.
 void RobustDenoiser::leaveStrays(PatchBlend& blend) const
 {
-	for (Index i = 0; i < size(); ++i) {
-		const double most = farthestNoise * m_input.noise[i] + farthestSpacing * m_input.spacing[i];
-		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > most)
+	for (Index i = 0; i < size(); ++i)
+		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > farthestMove(m_input, i))
 			blend.positions.col(i) = m_input.cloud.positions.col(i);
-	}
 }
 
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)

@@ -17,10 +17,10 @@ using samples::Random;
 
 constexpr double reach = 30.0; // of the samples, in spacings
 
-// One point per unit area up to `bend` s², to 8 units inside.
+// One point per unit area up to `bend` s², to 12 units inside: deeper than the frontier bends.
 Matrix2Xd sample(int seed, double bend, double noise)
 {
-	const double                 deepest = -8.0;
+	const double                 deepest = -12.0;
 	Random                       random(seed, 0);
 	std::vector<Eigen::Vector2d> points;
 	const int count = static_cast<int>(2.0 * reach * (std::abs(bend) * reach * reach - deepest));

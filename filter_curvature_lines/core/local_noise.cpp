@@ -18,6 +18,14 @@ constexpr Index  noiseNeighbors  = 8;    // places that a point takes its noise 
 constexpr Index  noisePatches    = 300;  // a place takes its noise from,
 constexpr double noiseShare      = 0.04; // or this share of all
 constexpr double minNoise        = 1e-10; // a length: of exact samples
+constexpr Index  fewPoints       = 1000;
+
+// A lower quantile, and how many standard deviations it is below the mean of a normal distribution.
+struct Quantile {
+	double share, below;
+};
+// A patch needs twenty points: in a small cloud it is half as wide as a part of it, and few lie off the edges.
+constexpr Quantile quartile = {0.25, 0.6744898}, tenth = {0.1, 1.2815516};
 
 // Positive values at some points spread over all: the geometric mean of the `averaged` nearest.
 std::vector<double> spread(
@@ -64,7 +72,7 @@ std::vector<double> localSpacing(
 	return spread(cloud.positions, sample, side, averaged, progress.sub(0.5, 1.0, stage));
 }
 
-// Noise varies over a cloud. The lower quartile of many patches belongs to those off the edges; chi-squared
+// Noise varies over a cloud. The lower quantile of many patches belongs to those off the edges; chi-squared
 // quantile by Wilson and Hilferty.
 std::vector<double> localNoise(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
 {
@@ -72,7 +80,8 @@ std::vector<double> localNoise(const PatchBlend& blend, const PointCloud& cloud,
 		return std::vector<double>(cloud.size(), minNoise);
 	const double degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
 	const double scatter  = 2.0 / (9.0 * degrees);
-	const double expected = std::pow(1.0 - scatter - 0.6744898 * std::sqrt(scatter), 3);
+	const auto   low      = cloud.size() < fewPoints ? tenth : quartile;
+	const double expected = std::pow(1.0 - scatter - low.below * std::sqrt(scatter), 3);
 	const Eigen::Matrix3Xd   centers = columnsOf(cloud.positions, blend.center);
 	const NeighborSearch     search(centers);
 	const std::vector<Index> places = order.sample(noisePlaces);
@@ -82,7 +91,7 @@ std::vector<double> localNoise(const PatchBlend& blend, const PointCloud& cloud,
 		std::vector<double> variance;
 		for (const Index c : search.nearest(cloud.positions.col(places[k]), count))
 			variance.push_back(blend.variance[c]);
-		noise[k] = std::max(minNoise, std::sqrt(quantileInPlace(variance, 0.25) / expected));
+		noise[k] = std::max(minNoise, std::sqrt(quantileInPlace(variance, low.share) / expected));
 	});
 	return spread(cloud.positions, places, noise, noiseNeighbors, {});
 }

@@ -17,7 +17,21 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-constexpr double tieBreak = 1e-6; // of the longest edge
+// CGAL takes the best triangle first, and of equally good ones that with the lower address. On a grid many are
+// equally good: points are shifted by up to so much of the longest edge. And triangles of one tetrahedron may
+// share their smallest empty ball, its own: radii are scaled by so little more than 1. What a point or a
+// triangle gets is told by its place alone.
+constexpr double pointTieBreak = 1e-6, triangleTieBreak = 1e-9;
+
+std::uint64_t hashOf(double x, double y, double z)
+{
+	const double  values[3] = {x, y, z};
+	std::uint64_t bits[3], hash = 0;
+	std::memcpy(bits, values, sizeof bits);
+	for (const std::uint64_t b : bits)
+		hash = (hash ^ b) * 0x9e3779b97f4a7c15u;
+	return hash;
+}
 
 // CGAL's own priority, the radius of the smallest empty ball, unless an edge is too long.
 struct BoundedPriority {
@@ -26,6 +40,7 @@ struct BoundedPriority {
 	template<class Front, class CellHandle>
 	double operator()(const Front& front, CellHandle& cell, const int& facet) const
 	{
+		std::uint64_t hash = 0; // the same for any order of the vertices
 		for (int a = 1; a <= 3; ++a) {
 			const auto p = cell->vertex((facet + a) % 4);
 			const auto q = cell->vertex((facet + a % 3 + 1) % 4);
@@ -36,22 +51,19 @@ struct BoundedPriority {
 			const double bound = std::max(longest[p->id()], longest[q->id()]);
 			if (CGAL::squared_distance(p->point(), q->point()) > bound * bound)
 				return front.infinity();
+			hash += hashOf(p->point().x(), p->point().y(), p->point().z());
 		}
-		return front.smallest_radius_delaunay_sphere(cell, facet);
+		const double share = double(hash >> 11) * 0x1p-53;
+		return front.smallest_radius_delaunay_sphere(cell, facet) * (1.0 + triangleTieBreak * share);
 	}
 };
 
-// Where triangles are equally good, as on a grid, CGAL decides by addresses. Shifts far below the noise, told by
-// the place alone, leave nothing to decide.
 Kernel::Point_3 withoutTies(const Eigen::Vector3d& p, double longestEdge)
 {
-	std::uint64_t bits[3], seed = 0;
-	std::memcpy(bits, p.data(), sizeof bits);
-	for (const std::uint64_t b : bits)
-		seed = (seed ^ b) * 0x9e3779b97f4a7c15u;
-	std::minstd_rand                       random(static_cast<std::uint32_t>(seed >> 32));
-	std::uniform_real_distribution<double> shift(-tieBreak * longestEdge, tieBreak * longestEdge);
-	const double                           x = shift(random), y = shift(random), z = shift(random);
+	const double     most = pointTieBreak * longestEdge;
+	std::minstd_rand random(static_cast<std::uint32_t>(hashOf(p.x(), p.y(), p.z()) >> 32));
+	std::uniform_real_distribution<double> shift(-most, most);
+	const double x = shift(random), y = shift(random), z = shift(random);
 	return {p.x() + x, p.y() + y, p.z() + z};
 }
 

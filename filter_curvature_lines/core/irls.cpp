@@ -24,49 +24,8 @@ VariationModel furtherOn(
 	return length > limit ? VariationModel(further * (limit / length)) : further;
 }
 
-} // namespace
-
-void VariationSamples::clear()
-{
-	for (auto* column : {&pu, &pv, &nu, &nv, &nw, &geometric})
-		column->clear();
-	first.clear();
-	second.clear();
-}
-
-void VariationSamples::add(
-	Index                  a,
-	Index                  b,
-	const Eigen::Vector2d& dp,
-	const Eigen::Vector3d& dn,
-	double                 geometricWeight)
-{
-	first.push_back(a);
-	second.push_back(b);
-	pu.push_back(dp.x());
-	pv.push_back(dp.y());
-	nu.push_back(dn.x());
-	nv.push_back(dn.y());
-	nw.push_back(dn.z());
-	geometric.push_back(geometricWeight);
-}
-
-bool VariationSamples::spanPlane() const
-{
-	double uu = 0.0, uv = 0.0, vv = 0.0;
-	for (std::size_t k = 0; k < pu.size(); ++k) {
-		uu += pu[k] * pu[k];
-		uv += pu[k] * pv[k];
-		vv += pv[k] * pv[k];
-	}
-	// det / trace bounds the smaller eigenvalue from below by half: a strip 1/1000 as wide as long is a line.
-	return uu * vv - uv * uv > 1e-6 * (uu + vv) * (uu + vv);
-}
-
-namespace {
-
 // argmin_X sum_s w_s geometric_s |X dp_s - dn_s|^2, w_s = weightOf(s) asked in one pass over the samples.
-template <class WeightOf>
+template<class WeightOf>
 VariationModel solveWeighted(const VariationSamples& samples, const WeightOf& weightOf)
 {
 	const double *pu = samples.pu.data(), *pv = samples.pv.data(), *nu = samples.nu.data(),
@@ -125,6 +84,43 @@ struct GemanMcClure {
 };
 
 } // namespace
+
+void VariationSamples::clear()
+{
+	for (auto* column : {&pu, &pv, &nu, &nv, &nw, &geometric})
+		column->clear();
+	first.clear();
+	second.clear();
+}
+
+void VariationSamples::add(
+	Index                  a,
+	Index                  b,
+	const Eigen::Vector2d& dp,
+	const Eigen::Vector3d& dn,
+	double                 geometricWeight)
+{
+	first.push_back(a);
+	second.push_back(b);
+	pu.push_back(dp.x());
+	pv.push_back(dp.y());
+	nu.push_back(dn.x());
+	nv.push_back(dn.y());
+	nw.push_back(dn.z());
+	geometric.push_back(geometricWeight);
+}
+
+bool VariationSamples::spanPlane() const
+{
+	double uu = 0.0, uv = 0.0, vv = 0.0;
+	for (std::size_t k = 0; k < pu.size(); ++k) {
+		uu += pu[k] * pu[k];
+		uv += pu[k] * pv[k];
+		vv += pv[k] * pv[k];
+	}
+	// det / trace bounds the smaller eigenvalue from below by half: a strip 1/1000 as wide as long is a line.
+	return uu * vv - uv * uv > 1e-6 * (uu + vv) * (uu + vv);
+}
 
 VariationModel weightedLeastSquares(
 	const VariationSamples& samples, const std::vector<double>& weights)

@@ -189,8 +189,8 @@ const IrlsFit& IrlsSolver::fit(
 	if (samples.size() == 0)
 		return m_fit;
 
-	VariationModel lastNext, lastStep;
-	bool           moving = true;
+	VariationModel lastNext = VariationModel::Zero(), lastStep = lastNext;
+	bool           moving   = true;
 	while (moving && m_fit.iterations < options.maxIterations) {
 		// sigma comes from all samples every time and the cut is re-evaluated: a sample may return.
 		computeResiduals(samples, m_fit.model);

@@ -7,13 +7,16 @@
 #include <cmath>
 #include <optional>
 
+#include "even_sample.h"
 #include "line_spacing.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 
 namespace {
 
 constexpr Index  fewestPoints   = 20; // as prepareCloud()
+constexpr Index  leastSample    = 20000;
 constexpr double shortestCrease = 5.0; // of those that fade out, in edges of the mesh
 
 class StageClock {
@@ -47,22 +50,39 @@ struct Neighborhoods {
 	}
 };
 
+PointCloud part(const PointCloud& cloud, const std::vector<Index>& which)
+{
+	return {columnsOf(cloud.positions, which), columnsOf(cloud.normals, which)};
+}
+
 void keepInliers(const PointCloud& cloud, ReconstructionResult& result)
 {
 	for (Index i = 0; i < cloud.size(); ++i)
 		if (!result.outlier[i])
 			result.kept.push_back(i);
-	const auto n = static_cast<Index>(result.kept.size());
-	if (n < fewestPoints)
+	if (static_cast<Index>(result.kept.size()) < fewestPoints)
 		throw InputError(
-			"Only " + std::to_string(n) +
+			"Only " + std::to_string(result.kept.size()) +
 			" points are left after outlier rejection; switch it off or reject less.");
-	result.cloud.positions.resize(3, n);
-	result.cloud.normals.resize(3, n);
-	for (Index i = 0; i < n; ++i) {
-		result.cloud.positions.col(i) = cloud.positions.col(result.kept[i]);
-		result.cloud.normals.col(i)   = cloud.normals.col(result.kept[i]);
-	}
+	result.cloud = part(cloud, result.kept);
+}
+
+// What a mesh of so few vertices has no use for.
+void thinDenseCloud(
+	const ReconstructionOptions& options, ReconstructionResult& result, StageClock& clock, const Progress& progress)
+{
+	const double most = options.pointsPerVertex * options.tracing.targetVertices;
+	if (options.method != ReconstructionOptions::Method::PositionField || !(most > 0.0) ||
+		result.cloud.size() <= std::max(most, double(leastSample)))
+		return;
+	const std::vector<Index> sample =
+		evenSample(result.cloud, std::max(static_cast<Index>(most), leastSample), progress);
+	std::vector<Index> kept;
+	for (const Index k : sample)
+		kept.push_back(result.kept[k]);
+	result.cloud = part(result.cloud, sample);
+	result.kept  = std::move(kept);
+	clock.book("sampling");
 }
 
 void traceAndFill(
@@ -206,6 +226,7 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 		clock.book("outliers");
 	}
 	keepInliers(cloud, result);
+	thinDenseCloud(options, result, clock, progress.sub(0.2, 0.2, "Thinning the cloud"));
 
 	std::optional<Neighborhoods> around;
 	const auto                   estimate = [&](const Progress& part) {

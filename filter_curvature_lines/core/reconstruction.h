@@ -34,6 +34,9 @@ struct ReconstructionOptions {
 	UmbilicOptions             umbilics;
 	LineTracingOptions tracing; // targetVertices 0 and epsilon 0: from the size of the cloud; both methods
 	CreaseOptions      creases;  // PositionField
+	// PositionField with tracing.targetVertices: denser clouds are thinned to so many points per vertex, but not
+	// below 20 000 points, once the outliers are out. 0: all are used.
+	double             pointsPerVertex = 32.0;
 	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
 	QuadMeshOptions    mesh;
 	bool               keepLines = false; // PositionField: its lines as polylines; traced ones are always kept
@@ -48,7 +51,7 @@ struct ReconstructionOptions {
 
 struct ReconstructionResult {
 	std::vector<char>  outlier; // per input point
-	std::vector<Index> kept;    // input index of each point of `cloud`
+	std::vector<Index> kept;    // input index of each point of `cloud`: no outliers, a sample of dense clouds
 	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
 	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
 	UmbilicRegions     umbilics;

@@ -50,6 +50,14 @@ RichParameterList parameters(const MeshDocument&)
 		"Anisotropy (1: square faces)",
 		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; 1 = "
 		"not at all)."));
+	list.addParam(RichFloat(
+		"points_per_vertex",
+		static_cast<Scalarm>(defaults.pointsPerVertex),
+		"Points used per vertex (0: all)",
+		"Position Field with a target number of vertices: a cloud with more points per vertex is thinned to so "
+		"many, evenly and not below 20000 points, once its outliers are out (0 = use all points, which takes "
+		"longer). Keep all to have all in the cleaned cloud.",
+		true));
 	addMeshParameters(list);
 	list.addParam(RichBool(
 		"reject_outliers", defaults.rejectOutliers, "Reject outliers", "Leave outliers out."));
@@ -91,6 +99,7 @@ ReconstructionOptions reconstructionOptions(const Parameters& parameters)
 	using Method   = ReconstructionOptions::Method;
 	options.method = parameters.choice("method") == 0 ? Method::PositionField : Method::TracedLines;
 	options.anisotropy             = parameters.real("anisotropy", 1.0, 10.0);
+	options.pointsPerVertex        = parameters.real("points_per_vertex", 0.0, 1e6);
 	options.rejectOutliers         = parameters.flag("reject_outliers");
 	options.denoise                = parameters.flag("denoise");
 	options.smoothDirections       = parameters.flag("smooth_directions");
@@ -157,6 +166,7 @@ void writeCleanedCloud(
 void reportStages(FilterResults& results, const ReconstructionResult& result)
 {
 	results.count("outliers", std::count(result.outlier.begin(), result.outlier.end(), char(1)));
+	results.count("used_points", result.cloud.size());
 	results.count("creases", static_cast<Index>(result.creases.curves.size()));
 	results.count("cones", result.mesh.singularTriangles);
 	results.count("line_ends", result.mesh.lineEnds);

@@ -229,6 +229,7 @@ class MeshSet(pymeshlab.MeshSet):
         target_vertices: int = 0,
         epsilon: float = 0.0,
         anisotropy: float = 1.5,
+        points_per_vertex: float = 32.0,
         triangulate: bool = False,
         close_holes: bool = False,
         reject_outliers: bool = True,
@@ -252,6 +253,10 @@ class MeshSet(pymeshlab.MeshSet):
 
         anisotropy: Position Field: by how much lines may run closer across strong bends than along (1 to 10; 1 = not at
             all).
+
+        points_per_vertex: Position Field with a target number of vertices: a cloud with more points per vertex is
+            thinned to so many, evenly and not below 20000 points, once its outliers are out (0 = use all points, which
+            takes longer). Keep all to have all in the cleaned cloud.
 
         triangulate: Cut all faces into triangles, for programs that know no others.
 

@@ -153,6 +153,25 @@ TEST(Reconstruction, KeptPointsAndOutliersAreThePartsOfTheInput)
 	}
 }
 
+TEST(Reconstruction, ThinsCloudsMuchDenserThanTheMesh)
+{
+	const Scan            scan         = scanOf(torus(24000));
+	ReconstructionOptions options      = quick();
+	options.tracing.targetVertices     = 500;
+	const ReconstructionResult thinned = reconstruct(scan.prepared.cloud, options);
+	EXPECT_NEAR(thinned.cloud.size(), 20000, 500);
+	EXPECT_TRUE(std::is_sorted(thinned.kept.begin(), thinned.kept.end()));
+	EXPECT_EQ(thinned.seconds.count("sampling"), 1u);
+	EXPECT_EQ(thinned.mesh.topology.eulerCharacteristic, 0);
+	EXPECT_EQ(thinned.mesh.topology.boundaryEdges, 0);
+	EXPECT_LT(distanceTo("torus", scan.prepared, thinned.mesh.mesh.vertices), 0.001);
+	for (Index i = 0; i < thinned.cloud.size(); i += 100)
+		EXPECT_EQ(thinned.cloud.positions.col(i), scan.prepared.cloud.positions.col(thinned.kept[i]));
+
+	options.pointsPerVertex = 0.0;
+	EXPECT_EQ(reconstruct(scan.prepared.cloud, options).cloud.size(), scan.prepared.cloud.size());
+}
+
 TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
 {
 	const Scan            scan        = scanOf(torus(800));

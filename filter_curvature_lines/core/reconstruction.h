@@ -36,7 +36,7 @@ struct ReconstructionOptions {
 	CreaseOptions      creases;  // PositionField
 	// PositionField with tracing.targetVertices: denser clouds are thinned to so many points per vertex, but not
 	// below 20 000 points, once the outliers are out. 0: all are used.
-	double             pointsPerVertex = 32.0;
+	double             pointsPerVertex = 24.0;
 	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
 	QuadMeshOptions    mesh;
 	bool               keepLines = false; // PositionField: its lines as polylines; traced ones are always kept

@@ -229,7 +229,7 @@ class MeshSet(pymeshlab.MeshSet):
         target_vertices: int = 0,
         epsilon: float = 0.0,
         anisotropy: float = 1.5,
-        points_per_vertex: float = 32.0,
+        points_per_vertex: float = 24.0,
         triangulate: bool = False,
         close_holes: bool = False,
         reject_outliers: bool = True,

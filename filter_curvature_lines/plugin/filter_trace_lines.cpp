@@ -112,10 +112,11 @@ LineNetwork positionFieldLines(
 	const PointCloud& cloud, const LineTracingOptions& tracing, const Progress& progress)
 {
 	ReconstructionOptions options;
-	options.rejectOutliers = false;
-	options.denoise        = false;
-	options.keepLines      = true;
-	options.tracing        = tracing;
+	options.rejectOutliers  = false;
+	options.denoise         = false;
+	options.pointsPerVertex = 0.0;
+	options.keepLines       = true;
+	options.tracing         = tracing;
 	return reconstruct(cloud, options, progress).lines;
 }
 

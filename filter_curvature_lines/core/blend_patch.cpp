@@ -37,16 +37,10 @@ struct Scratch {
 	}
 };
 
-void gather(
-	const BlendInput&     input,
-	const BlendGuide&     guide,
-	const NeighborSearch& search,
-	Index                 center,
-	double                reach,
-	Scratch&              scratch)
+void gather(const BlendInput& input, const BlendGuide& guide, Index center, double reach, Scratch& scratch)
 {
 	const Vector3d origin = guide.positions.col(center);
-	search.within(origin, reach, scratch.near);
+	guide.search.within(origin, reach, scratch.near);
 	scratch.height.clear();
 	scratch.place.clear();
 	scratch.normal.clear();
@@ -206,12 +200,7 @@ Sight bentSight(
 	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
 }
 
-BlendPatch patchAt(
-	const BlendInput&     input,
-	const BlendGuide&     guide,
-	const BlendOptions&   options,
-	const NeighborSearch& search,
-	Index                 i)
+BlendPatch patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i)
 {
 	BlendPatch    patch;
 	Scratch&      scratch = Scratch::ofThisThread();
@@ -219,7 +208,7 @@ BlendPatch patchAt(
 	const double  reach   = ballRadius(input, options, radius, i);
 	SurfacePatch& surface = patch.surface;
 	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
-	gather(input, guide, search, i, reach, scratch);
+	gather(input, guide, i, reach, scratch);
 	const bool fitted =
 		options.support == Support::Free  ? fitFree(surface, reach, scratch) :
 		options.support == Support::Gated ? fitGated(surface, input.noise[i], options.gateWidth, scratch) :

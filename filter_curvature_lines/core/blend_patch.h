@@ -3,6 +3,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+
+#include "neighborhoods.h"
 #include "spatial_order.h"
 #include "surface_patch.h"
 
@@ -20,7 +23,15 @@ struct BlendInput {
 // Where the points are thought to be: tells frames and gates. Heights are always those of the input,
 // so that repeated passes do not shrink the surface.
 struct BlendGuide {
-	Eigen::Matrix3Xd positions, normals;
+	BlendGuide(Eigen::Matrix3Xd guidePositions, Eigen::Matrix3Xd guideNormals) :
+			positions(std::move(guidePositions)), normals(std::move(guideNormals)), search(positions)
+	{
+	}
+	BlendGuide(const BlendGuide&)            = delete; // the search refers to the positions
+	BlendGuide& operator=(const BlendGuide&) = delete;
+
+	const Eigen::Matrix3Xd positions, normals;
+	const NeighborSearch   search; // of the positions
 };
 
 struct BlendOptions {
@@ -44,13 +55,7 @@ struct BlendPatch {
 	double       purity = 1.0;
 };
 
-// `search`: over the guide's positions.
-BlendPatch patchAt(
-	const BlendInput&     input,
-	const BlendGuide&     guide,
-	const BlendOptions&   options,
-	const NeighborSearch& search,
-	Index                 i);
+BlendPatch patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i);
 
 // Where a bent patch sees a point: x and y from the guide, z from the input.
 struct Sight {

@@ -33,40 +33,48 @@ struct PositionsAdaptor {
 // that tie with the limit, so that the exact (distance, index) order below decides and not the tree's.
 constexpr double tieMargin = 1.0 + 1e-12;
 
+struct ByDistanceThenIndex {
+	bool operator()(const DistanceIndex& a, const DistanceIndex& b) const
+	{
+		return a.first < b.first || (a.first == b.first && a.second < b.second);
+	}
+};
+
+// In order at any time: for the tens of neighbours that are asked for, sorting in beats a heap.
 class NearestSet {
 public:
 	using DistanceType = double;
-	NearestSet(std::vector<DistanceIndex>& heap, std::size_t capacity) :
-			m_heap(heap), m_capacity(capacity)
+	NearestSet(std::vector<DistanceIndex>& found, std::size_t capacity) :
+			m_found(found), m_capacity(capacity)
 	{
-		m_heap.clear();
+		m_found.clear();
 	}
-	std::size_t size() const { return m_heap.size(); }
-	bool        full() const { return m_heap.size() == m_capacity; }
-	void        sort() { std::sort_heap(m_heap.begin(), m_heap.end()); }
+	std::size_t size() const { return m_found.size(); }
+	bool        full() const { return m_found.size() == m_capacity; }
+	void        sort() {}
 	double      worstDist() const
 	{
-		return full() ? m_heap.front().first * tieMargin + std::numeric_limits<double>::min() :
+		return full() ? m_found.back().first * tieMargin + std::numeric_limits<double>::min() :
 						std::numeric_limits<double>::max();
 	}
 	bool addPoint(double distance, Index index)
 	{
-		const DistanceIndex candidate(distance, index);
-		if (full()) {
-			if (!(candidate < m_heap.front()))
-				return true;
-			std::pop_heap(m_heap.begin(), m_heap.end());
-			m_heap.back() = candidate;
-		}
-		else {
-			m_heap.push_back(candidate);
-		}
-		std::push_heap(m_heap.begin(), m_heap.end());
+		const ByDistanceThenIndex less;
+		const DistanceIndex       candidate(distance, index);
+		if (!full())
+			m_found.push_back(candidate);
+		else if (!less(candidate, m_found.back()))
+			return true;
+		DistanceIndex* const found = m_found.data();
+		std::size_t          place = m_found.size() - 1;
+		for (; place > 0 && less(candidate, found[place - 1]); --place)
+			found[place] = found[place - 1];
+		found[place] = candidate;
 		return true;
 	}
 
 private:
-	std::vector<DistanceIndex>& m_heap;
+	std::vector<DistanceIndex>& m_found;
 	std::size_t                 m_capacity;
 };
 
@@ -140,9 +148,8 @@ private:
 	double m_squaredRadius;
 };
 
-std::vector<Index> sortedIndices(std::vector<DistanceIndex>& found)
+std::vector<Index> indicesOf(const std::vector<DistanceIndex>& found)
 {
-	std::sort(found.begin(), found.end());
 	std::vector<Index> indices(found.size());
 	std::transform(found.begin(), found.end(), indices.begin(), [](const auto& f) {
 		return f.second;
@@ -279,7 +286,7 @@ std::vector<Index> NeighborSearch::nearest(const Eigen::Vector3d& query, Index k
 	thread_local std::vector<DistanceIndex> found;
 	NearestSet                              set(found, k);
 	m_tree->index.radiusSearchCustomCallback(query.data(), set);
-	return sortedIndices(found);
+	return indicesOf(found);
 }
 
 std::vector<Index> NeighborSearch::within(const Eigen::Vector3d& query, double radius) const
@@ -289,7 +296,8 @@ std::vector<Index> NeighborSearch::within(const Eigen::Vector3d& query, double r
 	thread_local std::vector<DistanceIndex> found;
 	BallSet                                 set(found, radius * radius);
 	m_tree->index.radiusSearchCustomCallback(query.data(), set);
-	return sortedIndices(found);
+	std::sort(found.begin(), found.end(), ByDistanceThenIndex());
+	return indicesOf(found);
 }
 
 void NeighborSearch::within(

@@ -3,6 +3,7 @@
 #include "patch_blend.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -210,20 +211,18 @@ CoveringPatches::CoveringPatches(
 		m_search(m_centers),
 		m_patches(m_centers.cols())
 {
-	std::vector<char>  used(m_patches.size(), 0);
-	std::vector<Index> found;
-	if (static_cast<Index>(targets.size()) == input.cloud.size())
-		used.assign(m_patches.size(), 1);
-	else
-		for (const Index i : targets) {
-			findCovering(i, found);
+	std::vector<std::atomic<bool>> used(m_patches.size());
+	const bool                     all = static_cast<Index>(targets.size()) == input.cloud.size();
+	if (!all)
+		parallelFor(static_cast<Index>(targets.size()), {}, [&](Index t) {
+			std::vector<Index>& found = Scratch::ofThisThread().near;
+			findCovering(targets[t], found);
 			for (const Index j : found)
-				used[j] = 1;
-		}
-	const NeighborSearch search(guide.positions);
+				used[j].store(true, std::memory_order_relaxed);
+		});
 	parallelFor(static_cast<Index>(m_patches.size()), progress, [&](Index c) {
-		if (used[c])
-			m_patches[c] = patchAt(input, guide, options, search, m_points[c]);
+		if (all || used[c])
+			m_patches[c] = patchAt(input, guide, options, m_points[c]);
 	});
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "gate_normals.h"
 #include "local_noise.h"
@@ -89,7 +90,7 @@ private:
 	double     freeRadius(const Progress& progress) const;
 	double     bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
 	Candidate  smoothCandidate(const Progress& progress) const;
-	BlendGuide edgePilot(
+	PatchBlend edgePilot(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	BlendOptions gatedOptions(std::vector<double> radius) const;
 	Candidate  sharpCandidate(
@@ -112,7 +113,7 @@ private:
 
 	RobustDenoisingOptions m_options;
 	BlendInput             m_input;
-	BlendGuide             m_start;            // the input itself
+	std::optional<BlendGuide> m_start;         // the input itself
 	std::vector<Index>     m_everywhere;       // all points
 	std::vector<Index>     m_test;             // points that scores are taken from
 	std::vector<Index>     m_plain;            // of m_test, off the edges
@@ -138,10 +139,11 @@ void RobustDenoiser::prepare(const Progress& progress)
 	const NeighborSearch search(cloud.positions);
 	m_input.spacing = localSpacing(cloud, search, m_input.order, progress.sub(0.0, 0.5, stage));
 	// Only the side of the normals matters, and that of a single one may be wrong.
-	m_start = {cloud.positions, gateNormals(cloud, search, progress.sub(0.5, 1.0, stage))};
+	Eigen::Matrix3Xd normals = gateNormals(cloud, search, progress.sub(0.5, 1.0, stage));
 	for (Index i = 0; i < size(); ++i)
-		if (cloud.normals.col(i).dot(m_start.normals.col(i)) > 0.0)
-			m_start.normals.col(i) = cloud.normals.col(i);
+		if (cloud.normals.col(i).dot(normals.col(i)) > 0.0)
+			normals.col(i) = cloud.normals.col(i);
+	m_start.emplace(cloud.positions, std::move(normals));
 }
 
 std::vector<double> RobustDenoiser::inSpacings(const std::vector<double>& lengths) const
@@ -204,7 +206,7 @@ void RobustDenoiser::findNoise(const Progress& progress)
 		if (m_options.noise <= 0.0) {
 			options.radius = m_least;
 			m_input.noise  = localNoise(
-				blendPatches(m_input, m_start, options, m_test, rung(progress, k)),
+				blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
 				m_input.cloud,
 				m_input.order);
 		}
@@ -244,7 +246,7 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 				pilotNoise * m_input.noise[i],
 				minPilotRadius * m_input.spacing[i],
 				maxFlagRadius * m_input.spacing[i]));
-	const PatchBlend blend = blendPatches(m_input, m_start, options, m_test, progress);
+	const PatchBlend blend = blendPatches(m_input, *m_start, options, m_test, progress);
 	std::vector<Index> plain;
 	Index              clear = 0;
 	for (const Index i : m_test) {
@@ -271,7 +273,7 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 	double best = std::numeric_limits<double>::infinity(), radius = factor;
 	for (int k = 0; factor < widest; ++k, factor *= freeStep) {
 		options.radius = radii(factor);
-		const double s = score(candidate(m_start, options, m_test, rung(progress, k)), m_plain);
+		const double s = score(candidate(*m_start, options, m_test, rung(progress, k)), m_plain);
 		if (s < best)
 			radius = factor;
 		best = std::min(best, s);
@@ -309,12 +311,12 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 	BlendOptions options;
 	options.radius = radii(factor);
 	options.purity = strictPurity;
-	Candidate c    = candidate(m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
+	Candidate c    = candidate(*m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
 	options.support = Support::Bent;
 	options.purity  = mildPurity;
 	double start    = bentStart * factor;
 	for (int pass = 0; pass < 2; ++pass) {
-		const BlendGuide guide{c.blend.positions, c.blend.normals};
+		const BlendGuide guide(c.blend.positions, c.blend.normals);
 		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
 		factor         = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
 		options.radius = radii(factor);
@@ -336,7 +338,7 @@ std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
 
 // A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth
 // surface is the best there is.
-BlendGuide RobustDenoiser::edgePilot(
+PatchBlend RobustDenoiser::edgePilot(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
 	BlendOptions options;
@@ -344,15 +346,15 @@ BlendGuide RobustDenoiser::edgePilot(
 	options.purity     = strictPurity;
 	options.acceptance = pilotAcceptance;
 	const PatchBlend free =
-		blendPatches(m_input, m_start, options, targets, progress.sub(0.0, 0.5, stage));
-	BlendGuide guide{smooth.blend.positions, smooth.blend.normals};
+		blendPatches(m_input, *m_start, options, targets, progress.sub(0.0, 0.5, stage));
+	Eigen::Matrix3Xd positions = smooth.blend.positions, normals = smooth.blend.normals;
 	for (const Index i : targets) {
-		guide.positions.col(i) = free.positions.col(i);
-		guide.normals.col(i)   = free.normals.col(i);
+		positions.col(i) = free.positions.col(i);
+		normals.col(i)   = free.normals.col(i);
 	}
-	const PatchBlend gated = blendPatches(
+	const BlendGuide guide(std::move(positions), std::move(normals));
+	return blendPatches(
 		m_input, guide, gatedOptions(options.radius), targets, progress.sub(0.5, 1.0, stage));
-	return {gated.positions, gated.normals};
 }
 
 BlendOptions RobustDenoiser::gatedOptions(std::vector<double> radius) const
@@ -369,16 +371,17 @@ BlendOptions RobustDenoiser::gatedOptions(std::vector<double> radius) const
 Candidate RobustDenoiser::sharpCandidate(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
-	BlendGuide   guide   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
+	PatchBlend   pilot   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
 	BlendOptions options = gatedOptions(pilotRadii(smooth));
 	const Progress ladder = progress.sub(0.2, 0.9, stage);
 	const double last  = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
 	double       bestScore = std::numeric_limits<double>::infinity();
 	Candidate    best;
 	for (int k = 0;; ++k) {
-		Candidate    c = candidate(guide, options, targets, rung(ladder, k));
-		const double s = score(c, targets);
-		guide = {c.blend.positions, c.blend.normals};
+		const BlendGuide guide(pilot.positions, pilot.normals);
+		Candidate        c = candidate(guide, options, targets, rung(ladder, k));
+		const double     s = score(c, targets);
+		pilot              = c.blend;
 		if (s < bestScore) {
 			bestScore = s;
 			best      = std::move(c);
@@ -391,7 +394,7 @@ Candidate RobustDenoiser::sharpCandidate(
 	}
 	options.radius = best.radius;
 	options.edges  = true;
-	guide          = {best.blend.positions, best.blend.normals};
+	const BlendGuide guide(best.blend.positions, best.blend.normals);
 	best.blend.positions =
 		blendPatches(m_input, guide, options, targets, progress.sub(0.9, 1.0, stage)).positions;
 	return best;

@@ -77,6 +77,7 @@ Plane majorityPlane(
 {
 	const auto n      = static_cast<std::uint32_t>(points.cols());
 	const int  judges = std::min<int>(n, planeSample);
+	double     bestDistance = std::numeric_limits<double>::infinity();
 	Plane      best;
 	distance.resize(std::max<std::size_t>(distance.size(), judges));
 	for (int trial = 0; trial < triples; ++trial) {
@@ -91,12 +92,17 @@ Plane majorityPlane(
 		Plane plane;
 		plane.normal = normal / length;
 		plane.offset = plane.normal.dot(a);
-		for (int k = 0; k < judges; ++k)
+		int nearer = 0; // than the quantile of the best so far
+		for (int k = 0; k < judges; ++k) {
 			distance[k] =
 				std::abs(plane.normal.dot(points.col(k * n / judges)) - plane.offset);
-		plane.deviation = minorityDeviations * quantile(distance, judges, minority);
-		if (best.deviation < 0.0 || plane.deviation < best.deviation)
-			best = plane;
+			nearer += distance[k] < bestDistance;
+		}
+		if (nearer <= static_cast<int>(minority * judges))
+			continue;
+		bestDistance    = quantile(distance, judges, minority);
+		plane.deviation = minorityDeviations * bestDistance;
+		best            = plane;
 	}
 	return best;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -116,6 +117,12 @@ double medianOf(std::vector<double> values)
 	return quantileOf(std::move(values), 0.5);
 }
 
+// Of a few among many, faster than a selection.
+void largestLast(std::vector<double>& values, std::size_t count)
+{
+	std::partial_sort(values.rbegin(), values.rbegin() + count, values.rend(), std::greater<double>());
+}
+
 // Risk of every trial, from the terms of the probes in `pool`.
 class RiskOfPool {
 public:
@@ -146,7 +153,7 @@ private:
 		if (terms.size() < 8 || terms.size() < 0.875 * m_pool.size())
 			return infinity;
 		const auto kept = static_cast<std::size_t>(std::ceil((1.0 - trim) * terms.size()));
-		std::nth_element(terms.begin(), terms.begin() + (kept - 1), terms.end());
+		largestLast(terms, terms.size() - kept);
 		return std::accumulate(terms.begin(), terms.begin() + kept, 0.0) / kept;
 	}
 
@@ -208,8 +215,8 @@ private:
 		if (terms.size() < 8)
 			return {};
 		const auto cut = static_cast<std::size_t>(0.5 * trim * terms.size());
-		std::nth_element(terms.begin(), terms.begin() + cut, terms.end());
-		std::nth_element(terms.begin() + cut, terms.end() - cut - 1, terms.end());
+		std::partial_sort(terms.begin(), terms.begin() + cut, terms.end());
+		largestLast(terms, cut);
 		const auto count = static_cast<double>(terms.size() - 2 * cut);
 		double     total = 0.0, squares = 0.0;
 		for (std::size_t t = cut; t < terms.size() - cut; ++t) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bracketed_selection.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -147,35 +149,23 @@ void IrlsSolver::computeResiduals(const VariationSamples& samples, const Variati
 	}
 }
 
-// Residuals change little from one iteration to the next, so the quantile is first looked for around the
-// last one: a pass over all and a selection among few.
-double IrlsSolver::scale(const IrlsOptions& options)
+// Residuals change little from one iteration to the next, and from one point to the next.
+double IrlsSolver::scale(const IrlsOptions& options, double& squaredQuantile)
 {
-	const std::size_t count = m_squared.size();
-	const double      place = options.quantile * double(count - 1);
-	const auto        rank  = static_cast<std::size_t>(place);
-	std::size_t       below = 0, inside = 0;
-	m_scratch.resize(count);
-	const double low = m_lastQuantile * (1.0 / 1.5), high = m_lastQuantile * 1.5;
-	for (const double r : m_squared) {
-		below += r < low;
-		m_scratch[inside] = r;
-		inside += (r >= low) & (r < high);
-	}
-	if (rank < below || rank + 1 >= below + inside) {
-		m_scratch = m_squared;
-		below     = 0;
-		inside    = count;
-	}
-	const auto at  = m_scratch.begin() + (rank - below);
-	const auto end = m_scratch.begin() + inside;
-	std::nth_element(m_scratch.begin(), at, end);
-	m_lastQuantile = *at;
-	double value   = std::sqrt(*at);
+	const int      count   = static_cast<int>(m_squared.size());
+	const double   place   = options.quantile * double(count - 1);
+	const double*  squared = m_squared.data();
+	const Selected middle  = selectNear(
+		 squaredQuantile,
+		 count,
+		 [=](int s) { return squared[s]; },
+		 [=](std::size_t counted) { return std::min(static_cast<std::size_t>(place), counted - 1); },
+		 m_scratch);
+	squaredQuantile = middle.value;
+	const double value = std::sqrt(std::max(middle.value, 0.0));
 	// The mean of the two middle residuals when their number is even.
-	if (const double part = place - double(rank); part > 0.0)
-		value += part * (std::sqrt(*std::min_element(at + 1, end)) - value);
-	return std::max(options.sigmaFactor * value, exactResidual);
+	const double between = value + (place - std::floor(place)) * (std::sqrt(middle.next) - value);
+	return std::max(options.sigmaFactor * between, exactResidual);
 }
 
 const IrlsFit& IrlsSolver::fit(
@@ -185,16 +175,18 @@ const IrlsFit& IrlsSolver::fit(
 	m_fit.sigma      = exactResidual;
 	m_fit.iterations = 0;
 	m_fit.weights.clear();
-	m_lastQuantile = 0.0;
 	if (samples.size() == 0)
 		return m_fit;
 
 	VariationModel lastNext = VariationModel::Zero(), lastStep = lastNext;
 	bool           moving   = true;
+	double         quantile = m_firstQuantile;
 	while (moving && m_fit.iterations < options.maxIterations) {
 		// sigma comes from all samples every time and the cut is re-evaluated: a sample may return.
 		computeResiduals(samples, m_fit.model);
-		const GemanMcClure   weightOf(scale(options), options);
+		const GemanMcClure weightOf(scale(options, quantile), options);
+		if (m_fit.iterations == 0)
+			m_firstQuantile = quantile;
 		const double*        squared = m_squared.data();
 		const VariationModel next    = solveWeighted(samples, [=](Index s) { return weightOf(squared[s]); });
 		const VariationModel step    = next - m_fit.model;
@@ -209,7 +201,7 @@ const IrlsFit& IrlsSolver::fit(
 		++m_fit.iterations;
 	}
 	computeResiduals(samples, m_fit.model);
-	m_fit.sigma = scale(options);
+	m_fit.sigma = scale(options, quantile);
 	const GemanMcClure weightOf(m_fit.sigma, options);
 	m_fit.weights.resize(m_squared.size());
 	std::transform(m_squared.begin(), m_squared.end(), m_fit.weights.begin(), weightOf);

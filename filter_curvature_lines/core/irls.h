@@ -68,10 +68,10 @@ public:
 
 private:
 	void   computeResiduals(const VariationSamples& samples, const VariationModel& model);
-	double scale(const IrlsOptions& options);
+	double scale(const IrlsOptions& options, double& squaredQuantile);
 
 	IrlsFit             m_fit;
-	double              m_lastQuantile = 0.0; // squared
+	double              m_firstQuantile = 0.0; // of the first residuals of the last fit, squared: a guess
 	std::vector<double> m_squared, m_scratch;
 };
 

@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include "bracketed_selection.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -252,15 +254,10 @@ BallPlane LocalSurfaceFitter::plane(const Eigen::Vector3d& normal) const
 }
 
 template<int Values>
-void LocalSurfaceFitter::reweight(LocalSamples<Values>& samples)
+void LocalSurfaceFitter::reweight(double rms, LocalSamples<Values>& samples)
 {
-	m_sorted.clear();
-	for (int s = 0; s < samples.size(); ++s)
-		if (samples.weight[s] > 0.0)
-			m_sorted.push_back(m_residuals[s]);
-	const auto middle = m_sorted.begin() + m_sorted.size() / 2;
-	std::nth_element(m_sorted.begin(), middle, m_sorted.end());
-	const double sigma = madFactor * *middle;
+	const auto counted = [&](int s) { return samples.weight[s] > 0.0 ? m_residuals[s] : -1.0; };
+	const double sigma = madFactor * quantileNear(rms / madFactor, samples.size(), counted, 0.5, m_scratch);
 	for (int s = 0; s < samples.size(); ++s) {
 		if (!(samples.weight[s] > 0.0))
 			continue;
@@ -286,8 +283,9 @@ bool LocalSurfaceFitter::heightStep(bool lookForOutliers, SurfaceElement& elemen
 		return false;
 	if (lookForOutliers) {
 		const double largest = distances<Degree, 1>(m_heights, fit.coefficients.data(), m_residuals.data());
-		if (largest > suspicious * std::sqrt(fit.squaredResidual / fit.sumOfWeights)) {
-			reweight(m_heights);
+		const double rms     = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
+		if (largest > suspicious * rms) {
+			reweight(rms, m_heights);
 			fit = fitPolynomial<Degree, 1>(m_heights);
 			if (!fit.valid)
 				return false;
@@ -343,9 +341,10 @@ bool LocalSurfaceFitter::normalStep(bool lookForOutliers, SurfaceElement& elemen
 	if (lookForOutliers) {
 		const double largest =
 			distances<Degree, 3>(m_normals, fit.coefficients.data(), m_residuals.data());
-		if (largest > suspicious * std::sqrt(fit.squaredResidual / fit.sumOfWeights)) {
+		const double rms = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
+		if (largest > suspicious * rms) {
 			std::fill_n(m_robust.begin(), m_normals.size(), 1.0);
-			reweight(m_normals);
+			reweight(rms, m_normals);
 			fit = fitPolynomial<Degree, 3>(m_normals);
 			if (!fit.valid)
 				return false;

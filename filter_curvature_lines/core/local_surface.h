@@ -72,15 +72,16 @@ private:
 	bool heightStep(bool lookForOutliers, SurfaceElement& element);
 	template<int Degree>
 	bool normalStep(bool lookForOutliers, SurfaceElement& element);
-	// Geman-McClure weights by `m_residuals` in place of those of the step before, `m_robust`.
+	// Geman-McClure weights by `m_residuals`, of this root mean square, in place of those of the step
+	// before, `m_robust`.
 	template<int Values>
-	void reweight(LocalSamples<Values>& samples);
+	void reweight(double rms, LocalSamples<Values>& samples);
 
 	BallPoints          m_ball;
 	LocalSamples<1>     m_heights;
 	LocalSamples<3>     m_normals;
 	std::vector<double> m_robust; // per point of the ball, from the step before
-	std::vector<double> m_residuals, m_sorted;
+	std::vector<double> m_residuals, m_scratch;
 };
 
 } // namespace curvature_lines

@@ -9,6 +9,8 @@
 
 #include <Eigen/Dense>
 
+#include "bracketed_selection.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -154,17 +156,16 @@ void project(const SurfacePatch& patch, const Eigen::Matrix3Xd& points, LocalSam
 // away, the median over all of them would be a mixture. 0 in the first step, which takes the minority.
 double robustScale(RobustPatchScratch& scratch, int n, double before)
 {
-	const double limit = cutoff * before;
-	int          count = 0;
-	for (int k = 0; k < n; ++k) {
+	const bool   first  = before <= 0.0;
+	const double limit  = first ? std::numeric_limits<double>::infinity() : cutoff * before;
+	const double factor = first ? minorityDeviations : medianDeviations;
+	const auto   absolute = [&](int k) {
 		const double r = std::abs(scratch.residuals[k]);
-		if (before <= 0.0 || r < limit)
-			scratch.absolute[count++] = r;
-	}
-	if (count == 0)
-		return before;
-	return before > 0.0 ? medianDeviations * quantile(scratch.absolute, count, 0.5) :
-						  minorityDeviations * quantile(scratch.absolute, count, minority);
+		return r < limit ? r : -1.0;
+	};
+	const double value =
+		quantileNear(before / factor, n, absolute, first ? minority : 0.5, scratch.absolute);
+	return value < 0.0 ? before : factor * value;
 }
 
 // One step of iteratively reweighted least squares; the weights are of the step before.
@@ -304,7 +305,6 @@ bool fitPatchRobustly(
 	samples.reserve(n);
 	for (int k = 0; k < n; ++k)
 		samples.add(0.0, 0.0, 0.0, Eigen::Matrix<double, 1, 1>(0.0));
-	scratch.absolute.resize(std::max<std::size_t>(scratch.absolute.size(), n));
 	if (frameFromPlane(patch, points, plane, minScale, samples.weight) < SurfacePatch::Fit::count)
 		return false;
 	for (const int iterations : {firstIterations, tiltedIterations}) {

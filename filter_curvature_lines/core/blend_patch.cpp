@@ -28,7 +28,6 @@ struct Scratch {
 	std::vector<Index>    near;
 	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
 	LocalSamples<1>       samples;
-	std::vector<double>   residuals;
 
 	static Scratch& ofThisThread()
 	{
@@ -102,7 +101,7 @@ bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
 					scratch.height[k].dot(patch.frame.n),
 					supportWeight(p.x(), p.y()));
 		}
-		if (!fitPatch(patch, scratch.samples, scratch.residuals))
+		if (!(last ? fitPatch(patch, scratch.samples) : fitQuadric(patch, scratch.samples)))
 			return false;
 		if (!last)
 			patch.tilt();
@@ -110,42 +109,50 @@ bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
 	return true;
 }
 
-double normalGate(const SurfacePatch& patch, const Vector3d& n, double x, double y, double width)
+// Into the frame of the patch, which the steps of a gated fit keep.
+void toFrame(const SurfacePatch& patch, Scratch& scratch)
 {
-	return gateWeight((n - patch.normal(x, y)).squaredNorm() / (width * width));
+	const auto inFrame = [&](const Vector3d& p, double scale) {
+		const Eigen::Vector2d plane = scale * patch.frame.toPlane(p);
+		return Vector3d(plane.x(), plane.y(), p.dot(patch.frame.n));
+	};
+	const double perRadius = 1.0 / patch.radius;
+	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
+		scratch.height[k] = inFrame(scratch.height[k], perRadius);
+		scratch.place[k]  = inFrame(scratch.place[k], perRadius);
+		scratch.normal[k] = inFrame(scratch.normal[k], 1.0);
+	}
 }
 
 // Grows from the centre: the gate of each step is the normal that the step before predicts.
 bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 {
 	const double cutoff = heightCutoff * noise;
+	toFrame(patch, scratch);
 	for (int step = 0; step < 4; ++step) {
 		const double shrink = growth[step];
-		const bool   last   = step == 3;
 		scratch.samples.reserve(scratch.near.size());
 		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-			const Eigen::Vector2d place = patch.frame.toPlane(scratch.place[k]) / patch.radius;
-			if (place.squaredNorm() >= shrink * shrink)
+			const double x = scratch.place[k].x(), y = scratch.place[k].y();
+			if (x * x + y * y >= shrink * shrink)
 				continue;
-			const double gate =
-				normalGate(patch, scratch.normal[k], place.x(), place.y(), width);
+			const Eigen::Vector2d slope = patch.gradient(x, y);
+			const Vector3d predicted(-slope.x(), -slope.y(), 1.0);
+			const double   gate = gateWeight(
+                (scratch.normal[k] - predicted / std::sqrt(1.0 + slope.squaredNorm())).squaredNorm() /
+                (width * width));
 			if (gate <= 0.0)
 				continue;
-			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
-			const double z = scratch.height[k].dot(patch.frame.n);
-			if (shrink == 1.0 && std::abs(patch.residual({p.x(), p.y(), z})) > cutoff)
+			const Vector3d& p = scratch.height[k];
+			if (shrink == 1.0 && std::abs(patch.residual({p.x(), p.y(), p.z()})) > cutoff)
 				continue;
-			const double w = gate * supportWeight(place.x() / shrink, place.y() / shrink);
-			addSample(scratch, p.x(), p.y(), z, w);
+			addSample(scratch, p.x(), p.y(), p.z(), gate * supportWeight(x / shrink, y / shrink));
 		}
-		const SurfacePatch before = patch;
-		if (fitPatch(patch, scratch.samples, scratch.residuals))
-			continue;
-		if (last)
-			return false;
-		patch = before;
+		if (step == 3)
+			return fitPatch(patch, scratch.samples);
+		fitQuadric(patch, scratch.samples);
 	}
-	return true;
+	return false;
 }
 
 bool fitBent(SurfacePatch& patch, Scratch& scratch)
@@ -155,7 +162,7 @@ bool fitBent(SurfacePatch& patch, Scratch& scratch)
 		if (s.seen)
 			addSample(scratch, s.x, s.y, s.z, supportWeight(s.x, s.y));
 	}
-	return fitPatch(patch, scratch.samples, scratch.residuals);
+	return fitPatch(patch, scratch.samples);
 }
 
 // Patches bent over an edge leave residuals larger than the noise explains.

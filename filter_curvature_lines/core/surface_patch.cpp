@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "bracketed_selection.h"
+#include "simd_block.h"
 
 namespace curvature_lines {
 
@@ -46,6 +47,41 @@ auto leveragePolynomial(const Matrix& inverse)
 			c[monomialIndex(exponent[r][0] + exponent[s][0], exponent[r][1] + exponent[s][1])] +=
 				inverse(r, s);
 	return c;
+}
+
+// Over the samples: sum W r^2, sum W^2 leverage, sum W^2.
+struct PatchSums {
+	double squares, lost, squaredWeights;
+};
+
+CURVATURE_LINES_AVX2_CLONE PatchSums sumUp(const SurfacePatch& patch, LocalSamples<1>& samples)
+{
+	const double* const a    = patch.coefficients.data();
+	const double* const h    = patch.leverageCoefficients.data();
+	const double        ir   = 1.0 / patch.radius;
+	const int           n    = samples.pad();
+	const Block         zero = {};
+	Block               squares = zero, lost = zero, squaredWeights = zero;
+	for (int s = 0; s < n; s += blockSize) {
+		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]), w = blockAt(&samples.weight[s]);
+		const Block slopeX = (a[1] + 2.0 * a[3] * x + a[4] * y) * ir;
+		const Block slopeY = (a[2] + a[4] * x + 2.0 * a[5] * y) * ir;
+		const Block off =
+			blockAt(&samples.value[0][s]) - a[0] - x * (a[1] + a[3] * x + a[4] * y) - y * (a[2] + a[5] * y);
+		Block leverage = zero;
+#pragma GCC unroll 8
+		for (int i = 4; i >= 0; --i) {
+			Block inner = zero;
+#pragma GCC unroll 8
+			for (int j = 4 - i; j >= 0; --j)
+				inner = inner * y + h[monomialIndex(i, j)];
+			leverage = leverage * x + inner;
+		}
+		squares += w * off * off / (1.0 + slopeX * slopeX + slopeY * slopeY);
+		lost += w * w * leverage;
+		squaredWeights += w * w;
+	}
+	return {sumOf(squares), sumOf(lost), sumOf(squaredWeights)};
 }
 
 double quantile(std::vector<double>& values, int n, double share)
@@ -260,7 +296,15 @@ void patchResiduals(
 			.sqrt();
 }
 
-bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples, std::vector<double>& residuals)
+bool fitQuadric(SurfacePatch& patch, LocalSamples<1>& samples)
+{
+	const SurfacePatch::Fit fit = fitPolynomial<2, 1>(samples);
+	if (fit.valid)
+		patch.coefficients = fit.coefficients;
+	return fit.valid;
+}
+
+bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples)
 {
 	const SurfacePatch::Fit fit = fitPolynomial<2, 1>(samples);
 	patch.valid                 = fit.valid;
@@ -271,17 +315,11 @@ bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples, std::vector<double>
 	regular.diagonal() *= 1.0 + 1e-10; // as in the fit
 	patch.leverageCoefficients =
 		leveragePolynomial(regular.ldlt().solve(decltype(regular)::Identity()).eval());
-	patchResiduals(patch, samples, residuals);
-	double squares = 0.0, degrees = fit.sumOfWeights, weights2 = 0.0;
-	for (int k = 0; k < samples.size(); ++k) {
-		const double w = samples.weight[k];
-		squares += w * residuals[k] * residuals[k];
-		degrees -= w * w * patch.leverage(samples.x[k], samples.y[k]);
-		weights2 += w * w;
-	}
+	const PatchSums sums    = sumUp(patch, samples);
+	const double    degrees = fit.sumOfWeights - sums.lost;
 	// Samples that a quadric goes through exactly tell nothing about the noise.
-	patch.scale          = degrees > 1e-6 * fit.sumOfWeights ? std::sqrt(squares / degrees) : 0.0;
-	patch.effectiveCount = fit.sumOfWeights * fit.sumOfWeights / weights2;
+	patch.scale          = degrees > 1e-6 * fit.sumOfWeights ? std::sqrt(sums.squares / degrees) : 0.0;
+	patch.effectiveCount = fit.sumOfWeights * fit.sumOfWeights / sums.squaredWeights;
 	return true;
 }
 

@@ -62,8 +62,11 @@ void patchResiduals(
 
 // Weighted least squares in the frame of the patch, with
 // s^2 = sum W r^2 / (sum W - tr(A^-1 sum W^2 phi phi^T)). False, and invalid, when the samples do not
-// determine a quadric. `residuals` is left with those of the samples.
-bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples, std::vector<double>& residuals);
+// determine a quadric.
+bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples);
+
+// The coefficients alone, for steps on the way. False, and left alone, when there are none.
+bool fitQuadric(SurfacePatch& patch, LocalSamples<1>& samples);
 
 // Scratch of a robust fit, one per thread; holds samples, their robust weights and residuals afterwards.
 struct RobustPatchScratch {

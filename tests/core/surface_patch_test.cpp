@@ -33,14 +33,13 @@ TEST(SurfacePatch, FindsAQuadricAndItsNormals)
 	const double        radius = 0.4;
 	SurfacePatch        patch(Vector3d(1.0, 2.0, 3.0), Vector3d(1.0, 1.0, 0.5).normalized(), radius);
 	LocalSamples<1>     samples;
-	std::vector<double> residuals;
 	Random              random(1, 0);
 	samples.reserve(40);
 	for (int k = 0; k < 40; ++k) {
 		const double x = random.uniform(-0.7, 0.7), y = random.uniform(-0.7, 0.7);
 		samples.add(x, y, supportWeight(x, y), value(paraboloid(x, y)));
 	}
-	ASSERT_TRUE(fitPatch(patch, samples, residuals));
+	ASSERT_TRUE(fitPatch(patch, samples));
 	EXPECT_NEAR(patch.scale, 0.0, 1e-7);
 	const auto at = [&](double x, double y) -> Vector3d {
 		return patch.origin + radius * patch.frame.toSpace(Eigen::Vector2d(x, y)) +
@@ -77,7 +76,8 @@ TEST(SurfacePatch, LeverageScaleAndCountByDenseMatrices)
 		w[k] = supportWeight(x, y);
 		samples.add(x, y, w[k], value(paraboloid(x, y) + 0.01 * random.normal()));
 	}
-	ASSERT_TRUE(fitPatch(patch, samples, residuals));
+	ASSERT_TRUE(fitPatch(patch, samples));
+	patchResiduals(patch, samples, residuals);
 	const MatrixXd inverse = (phi.transpose() * w.asDiagonal() * phi).inverse();
 	const MatrixXd lost = inverse * phi.transpose() * w.cwiseProduct(w).asDiagonal() * phi;
 	double         squares = 0.0;
@@ -98,15 +98,14 @@ TEST(SurfacePatch, TooFewOrCollinearSamplesAreInvalidOrFinite)
 {
 	SurfacePatch        patch(Vector3d::Zero(), Vector3d::UnitZ(), 1.0);
 	LocalSamples<1>     samples;
-	std::vector<double> residuals;
 	samples.reserve(20);
 	for (int k = 0; k < 5; ++k)
 		samples.add(0.1 * k, 0.01 * k * k, 1.0, value(0.0));
-	EXPECT_FALSE(fitPatch(patch, samples, residuals));
+	EXPECT_FALSE(fitPatch(patch, samples));
 	samples.reserve(20);
 	for (int k = 0; k < 20; ++k)
 		samples.add(0.05 * k, 0.0, 1.0, value(0.1));
-	if (fitPatch(patch, samples, residuals)) {
+	if (fitPatch(patch, samples)) {
 		EXPECT_TRUE(patch.coefficients.allFinite());
 		EXPECT_TRUE(std::isfinite(patch.scale));
 		EXPECT_NEAR(patch.residual({0.3, 0.0, 0.1}), 0.0, 1e-6);

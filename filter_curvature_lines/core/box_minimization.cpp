@@ -1,10 +1,13 @@
-// L-BFGS-B through LBFGSpp and Polak-Ribiere through dlib, with one guard around both.
+// L-BFGS and L-BFGS-B through LBFGSpp and Polak-Ribiere through dlib, with one guard around both.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_minimization.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include <LBFGS.h>
 #include <LBFGSB.h>
 
 // Only dlib's headers are used: the check that they match a compiled dlib would need that library.
@@ -74,26 +77,56 @@ private:
 };
 
 // LBFGSpp has no hook per iteration; it calls the line search exactly once in each.
-template<class Scalar>
-struct CountingLineSearch {
-	using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
-
-	static void LineSearch(
-		Guard&                              objective,
-		Scalar&                             value,
-		Vector&                             x,
-		Vector&                             gradient,
-		Scalar&                             step,
-		const Scalar&                       maxStep,
-		const Vector&                       direction,
-		const Vector&                       start,
-		const LBFGSpp::LBFGSBParam<Scalar>& parameters)
-	{
-		objective.beginIteration();
-		LBFGSpp::LineSearchMoreThuente<Scalar>::LineSearch(
-			objective, value, x, gradient, step, maxStep, direction, start, parameters);
-	}
+template<template<class> class Search>
+struct Counting {
+	template<class Scalar>
+	struct Step {
+		template<class... Arguments>
+		static void LineSearch(Guard& objective, Arguments&&... arguments)
+		{
+			objective.beginIteration();
+			Search<Scalar>::LineSearch(objective, std::forward<Arguments>(arguments)...);
+		}
+	};
 };
+
+template<class Parameters>
+Parameters lbfgsParameters()
+{
+	Parameters parameters;
+	parameters.m           = 10;
+	parameters.epsilon     = 0.0; // the gradient's size has no natural scale here
+	parameters.epsilon_rel = 0.0;
+	parameters.past        = 1;
+	parameters.delta       = relativeGain;
+	return parameters;
+}
+
+// A failed line search means a useless memory: begin again without it, as long as that helps.
+template<class Minimize>
+Minimum restarted(Guard& guard, const Minimize& minimize)
+{
+	const SerialProducts serial;
+	double               before = std::numeric_limits<double>::infinity();
+	while (guard.iterationsLeft() > 0 && guard.best.value < before) {
+		before                = guard.best.value;
+		Eigen::VectorXd x     = guard.best.x;
+		double          value = 0.0;
+		try {
+			minimize(x, value);
+			break;
+		}
+		catch (const Cancelled&) {
+			throw;
+		}
+		catch (const std::bad_alloc&) {
+			throw;
+		}
+		catch (const std::exception&) {
+		}
+	}
+	return guard.best;
+}
 
 using DlibVector = dlib::matrix<double, 0, 1>;
 
@@ -168,6 +201,22 @@ private:
 
 } // namespace
 
+Minimum minimizeLbfgs(
+	const Objective&       objective,
+	const Eigen::VectorXd& start,
+	Index                  maxIterations,
+	const Progress&        progress)
+{
+	auto parameters       = lbfgsParameters<LBFGSpp::LBFGSParam<double>>();
+	parameters.linesearch = LBFGSpp::LBFGS_LINESEARCH_BACKTRACKING_WOLFE;
+	Guard guard(objective, start, maxIterations, progress);
+	return restarted(guard, [&](Eigen::VectorXd& x, double& value) {
+		parameters.max_iterations = guard.iterationsLeft();
+		LBFGSpp::LBFGSSolver<double, Counting<LBFGSpp::LineSearchBacktracking>::Step> solver(parameters);
+		solver.minimize(guard, x, value);
+	});
+}
+
 Minimum minimizeLbfgsB(
 	const Objective&       objective,
 	const Eigen::VectorXd& start,
@@ -175,36 +224,13 @@ Minimum minimizeLbfgsB(
 	Index                  maxIterations,
 	const Progress&        progress)
 {
-	const SerialProducts serial;
+	auto  parameters = lbfgsParameters<LBFGSpp::LBFGSBParam<double>>();
 	Guard guard(objective, start, maxIterations, progress);
-	LBFGSpp::LBFGSBParam<double> parameters;
-	parameters.m           = 10;
-	parameters.epsilon     = 0.0; // the gradient's size has no natural scale here
-	parameters.epsilon_rel = 0.0;
-	parameters.past        = 1;
-	parameters.delta       = relativeGain;
-	double before          = std::numeric_limits<double>::infinity();
-	// A failed line search means a useless memory: begin again without it, as long as that helps.
-	while (guard.iterationsLeft() > 0 && guard.best.value < before) {
-		before                    = guard.best.value;
+	return restarted(guard, [&](Eigen::VectorXd& x, double& value) {
 		parameters.max_iterations = guard.iterationsLeft();
-		Eigen::VectorXd x         = guard.best.x;
-		double          value     = 0.0;
-		try {
-			LBFGSpp::LBFGSBSolver<double, CountingLineSearch> solver(parameters);
-			solver.minimize(guard, x, value, box.lower, box.upper);
-			break;
-		}
-		catch (const Cancelled&) {
-			throw;
-		}
-		catch (const std::bad_alloc&) {
-			throw;
-		}
-		catch (const std::exception&) {
-		}
-	}
-	return guard.best;
+		LBFGSpp::LBFGSBSolver<double, Counting<LBFGSpp::LineSearchMoreThuente>::Step> solver(parameters);
+		solver.minimize(guard, x, value, box.lower, box.upper);
+	});
 }
 
 Minimum minimizePolakRibiere(

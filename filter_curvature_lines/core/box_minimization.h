@@ -1,5 +1,5 @@
-// The papers' two optimisers within a box: L-BFGS-B (A09 ref. 52) and Polak-Ribiere conjugate gradients
-// (R07). Unlike the libraries behind them they never fail: what they return is the best point seen.
+// The papers' two optimisers: L-BFGS-B (A09 ref. 52), within a box or without, and Polak-Ribiere conjugate
+// gradients (R07) within one. Unlike the libraries behind them they never fail: what they return is the best point seen.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -22,9 +22,15 @@ struct Minimum {
 	Index  iterations = 0;
 };
 
-// `start` lies in the box, which must be finite for Polak-Ribiere. Both stop after maxIterations,
+// `start` lies in the box, which must be finite for Polak-Ribiere. All stop after maxIterations,
 // or when an iteration gains less than 1e-9 of the value. Progress reports, and can cancel, once
 // per iteration.
+Minimum minimizeLbfgs(
+	const Objective&       objective,
+	const Eigen::VectorXd& start,
+	Index                  maxIterations,
+	const Progress&        progress);
+
 Minimum minimizeLbfgsB(
 	const Objective&       objective,
 	const Eigen::VectorXd& start,

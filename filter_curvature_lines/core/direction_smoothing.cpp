@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include <Eigen/Geometry>
 #include <Eigen/IterativeLinearSolvers>
@@ -80,8 +79,7 @@ NeighborLists symmetrized(const NeighborLists& lists)
 Eigen::VectorXcd doubledAngles(const Eigen::VectorXd& theta)
 {
 	Eigen::VectorXcd u(theta.size());
-	for (Eigen::Index i = 0; i < theta.size(); ++i)
-		u[i] = std::polar(1.0, 2.0 * theta[i]);
+	parallelFor(static_cast<Index>(theta.size()), {}, [&](Index i) { u[i] = std::polar(1.0, 2.0 * theta[i]); });
 	return u;
 }
 
@@ -97,6 +95,7 @@ DirectionEnergy::DirectionEnergy(
 	}
 	const DirectionTrust trust = directionTrust(cloud, field, m_theta0);
 	m_omega                    = trust.weight;
+	m_u0                       = doubledAngles(m_theta0);
 	buildCoupling(cloud, field, trust.turning, progress);
 }
 
@@ -157,15 +156,15 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 	Eigen::VectorXd        data(n), agreement(n); // added up in order below, however many threads there are
 	gradient.resize(n);
 	parallelFor(n, {}, [&](Index i) {
-		const double turn = theta[i] - m_theta0[i];
-		Complex      sum  = 0.0; // -alpha sum_j H_ij u_j
+		const Complex turned = u[i] * std::conj(m_u0[i]); // exp(2 i (theta - theta0))
+		Complex       sum    = 0.0; // -alpha sum_j H_ij u_j
 		for (Hermitian::InnerIterator entry(m_coupling, i); entry; ++entry)
 			if (entry.col() != i)
 				sum += Complex(entry.value()) * u[entry.col()];
 		const Complex pair = std::conj(u[i]) * sum; // -alpha sum_j w_ij exp(-2 i psi_ij)
-		data[i]            = m_omega[i] * std::sin(turn) * std::sin(turn);
+		data[i]            = 0.5 * m_omega[i] * (1.0 - turned.real());
 		agreement[i]       = m_alpha * m_totalWeight[i] - pair.real();
-		gradient[i] = (1.0 - m_alpha) * m_omega[i] * std::sin(2.0 * turn) + pair.imag();
+		gradient[i] = (1.0 - m_alpha) * m_omega[i] * turned.imag() + pair.imag();
 	});
 	return (1.0 - m_alpha) * data.sum() - 0.25 * agreement.sum();
 }
@@ -178,19 +177,18 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 Eigen::VectorXd DirectionEnergy::linearStart() const
 {
 	const auto             n  = static_cast<Index>(m_theta0.size());
-	const Eigen::VectorXcd u0 = doubledAngles(m_theta0);
 	Eigen::VectorXcf       right(n);
 	for (Index i = 0; i < n; ++i)
-		right[i] = std::complex<float>(dataWeight(i) * u0[i]);
+		right[i] = std::complex<float>(dataWeight(i) * m_u0[i]);
 	Eigen::ConjugateGradient<Hermitian, Eigen::Lower | Eigen::Upper> solver;
 	solver.setMaxIterations(linearIterations);
 	solver.setTolerance(1e-5f);
 	solver.compute(m_coupling);
-	const Eigen::VectorXcf u = solver.solveWithGuess(right, u0.cast<std::complex<float>>());
+	const Eigen::VectorXcf u = solver.solveWithGuess(right, m_u0.cast<std::complex<float>>());
 
 	Eigen::VectorXd theta = m_theta0;
 	for (Eigen::Index i = 0; i < theta.size(); ++i) {
-		const Complex turn = Complex(u[i]) * std::conj(u0[i]);
+		const Complex turn = Complex(u[i]) * std::conj(m_u0[i]);
 		if (std::isfinite(turn.real()) && std::isfinite(turn.imag()) && std::abs(turn) > 1e-6)
 			theta[i] += 0.5 * std::arg(turn);
 	}
@@ -214,11 +212,8 @@ DirectionSmoothingResult smoothDirections(
 	if (!(energy(start, gradient) < result.initialEnergy))
 		start = energy.initialAngles();
 
-	const double  infinity = std::numeric_limits<double>::infinity();
-	const Box     unbounded {
-        Eigen::VectorXd::Constant(n, -infinity), Eigen::VectorXd::Constant(n, infinity)};
-	const Minimum best = minimizeLbfgsB(
-		objective, start, unbounded, options.iterations, progress.sub(0.4, 1.0, "Smoothing directions"));
+	const Minimum best = minimizeLbfgs(
+		objective, start, options.iterations, progress.sub(0.4, 1.0, "Smoothing directions"));
 
 	result.iterations  = best.iterations;
 	result.finalEnergy = best.value;

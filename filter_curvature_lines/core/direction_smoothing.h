@@ -60,6 +60,7 @@ private:
 
 	double          m_alpha;
 	Eigen::VectorXd m_theta0, m_omega;
+	Eigen::VectorXcd m_u0; // exp(2 i theta0)
 	Eigen::VectorXd m_totalWeight; // sum_j w_ij
 	// -alpha w_ij exp(2 i phi_ij), where theta_i - theta_j = phi_ij when parallel; the diagonal, which the energy
 	// does not know, makes it the system of the linear start.

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "quantile.h"
+#include "simd_block.h"
 
 namespace curvature_lines {
 
@@ -22,7 +23,6 @@ constexpr int    mixedPasses    = 2;   // the second changes what the first leav
 constexpr int    optimalPasses  = 5;   // A09: "4-5 iterations"
 constexpr double kernelRatio    = 2.5; // support radius over the width of the smooth kernel
 constexpr double averageRatio   = 4.0; // LOP: theta(r) = exp(-r^2 / (h/4)^2); plain averages shrink as much
-constexpr double maxExponent    = 300.0; // reached only when `closest` is not the closest by far
 constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
 constexpr double maxNormalTurn  = 0.5;  // tangent of the turn by which curvature may correct a normal
 constexpr double flatShare      = 1e-3; // see principalDirection()
@@ -31,22 +31,83 @@ constexpr double noisyShare     = 0.9;  // even if that much of the cloud has no
 constexpr double mostNoise      = 2.5;  // over that quantile: four standard deviations
 constexpr double maxBeside      = 1.0;  // kernel widths between c and the mean point that are extrapolated
 
-// The points with positive statistical weight at `closest`, and itself. Read in place: nothing is
-// copied.
+// Of one support; kept by each thread.
+struct SupportScratch {
+	std::vector<Index>  points;
+	std::vector<double> statistical, kernel, squaredDistance;
+	std::vector<double> position[3];
+
+	static SupportScratch& ofThisThread()
+	{
+		thread_local SupportScratch scratch;
+		return scratch;
+	}
+	void clear()
+	{
+		points.clear();
+		for (auto* array : {&statistical, &position[0], &position[1], &position[2]})
+			array->clear();
+	}
+	void add(const PointCloud& cloud, Index j, double weight)
+	{
+		points.push_back(j);
+		statistical.push_back(weight);
+		for (int c = 0; c < 3; ++c)
+			position[c].push_back(cloud.positions(c, j));
+	}
+	// Whole blocks, with points of weight 0.
+	void pad()
+	{
+		const std::size_t padded = (points.size() + blockSize - 1) / blockSize * blockSize;
+		for (auto* array : {&statistical, &position[0], &position[1], &position[2]})
+			array->resize(padded, 0.0);
+		kernel.resize(padded);
+		squaredDistance.resize(padded);
+	}
+};
+
+CURVATURE_LINES_AVX2_CLONE void squaredDistances(const double* center, SupportScratch& scratch)
+{
+	for (std::size_t k = 0; k < scratch.squaredDistance.size(); k += blockSize) {
+		const Block x = blockAt(&scratch.position[0][k]) - center[0];
+		const Block y = blockAt(&scratch.position[1][k]) - center[1];
+		const Block z = blockAt(&scratch.position[2][k]) - center[2];
+		blockAt(&scratch.squaredDistance[k]) = x * x + y * y + z * z;
+	}
+}
+
+CURVATURE_LINES_AVX2_CLONE void
+gaussianWeights(double reference, double sharpness, SupportScratch& scratch)
+{
+	for (std::size_t k = 0; k < scratch.kernel.size(); k += blockSize) {
+		Block weight = (blockAt(&scratch.squaredDistance[k]) - reference) * sharpness;
+		toExpOfNegative(weight);
+		blockAt(&scratch.kernel[k]) = weight * blockAt(&scratch.statistical[k]);
+	}
+}
+
+// The points with positive statistical weight at `closest`, and itself.
 class Support {
 public:
 	Support(const PointCloud& cloud, const CurvatureField& field, Index closest) :
-			m_cloud(cloud),
-			m_heights(field.height),
-			m_closest(closest),
-			m_row(field.weights.neighbors[closest]),
-			m_weights(field.weights.values.data() + field.weights.neighbors.offsets[closest])
+			m_cloud(cloud), m_heights(field.height), m_scratch(SupportScratch::ofThisThread())
 	{
+		const NeighborLists::Row row     = field.weights.neighbors[closest];
+		const double* const      weights = field.weights.values.data() + field.weights.neighbors.offsets[closest];
+		const Vector3d           normal  = cloud.normals.col(closest);
+		m_scratch.clear();
+		m_scratch.add(cloud, closest, 1.0);
+		for (Index k = 0; k < row.size(); ++k)
+			if (row[k] != closest && cloud.normals.col(row[k]).dot(normal) > 0.0)
+				m_scratch.add(cloud, row[k], weights[k]);
+		m_scratch.pad();
+		const Vector3d site = cloud.positions.col(closest);
+		squaredDistances(site.data(), m_scratch);
 		double weight = 0.0, moment = 0.0;
-		forEach([&](Index j, double w) {
-			weight += w;
-			moment += w * (cloud.positions.col(j) - cloud.positions.col(closest)).squaredNorm();
-		});
+		for (std::size_t k = 0; k < m_scratch.points.size(); ++k) {
+			weight += m_scratch.statistical[k];
+			moment += m_scratch.statistical[k] * m_scratch.squaredDistance[k];
+		}
 		// Of the uniform disk with this second moment. Unlike the largest distance it hardly jumps
 		// from one cell to the next, and with it what is interpolated.
 		m_radius = std::sqrt(2.0 * moment / weight);
@@ -62,37 +123,30 @@ public:
 		return m_cloud.positions.col(j) + m_heights[j] * m_cloud.normals.col(j);
 	}
 
-	template<class Visit> // visit(j, statistical weight)
-	void forEach(const Visit& visit) const
-	{
-		const auto normal = m_cloud.normals.col(m_closest);
-		visit(m_closest, 1.0);
-		for (Index k = 0; k < m_row.size(); ++k)
-			if (m_row[k] != m_closest && m_cloud.normals.col(m_row[k]).dot(normal) > 0.0)
-				visit(m_row[k], m_weights[k]);
-	}
-
-	// visit(j, statistical weight x Gaussian of the distance to `center`, that distance squared).
-	// The Gaussian is relative to the closest point's, so far from the cloud it does not become 0
-	// everywhere.
-	template<class Visit>
-	void forEachNear(const Vector3d& center, double ratio, const Visit& visit) const
+	// Weights statistical x Gaussian of the distance to `center`. The Gaussian is relative to that of the
+	// closest point, so far from the cloud it does not become 0 everywhere.
+	void weigh(const Vector3d& center, double ratio)
 	{
 		const double sharpness = m_radius > 1e-100 ? ratio * ratio / (m_radius * m_radius) : 0.0;
-		const double reference = (m_cloud.positions.col(m_closest) - center).squaredNorm();
-		forEach([&](Index j, double w) {
-			const double d2 = (m_cloud.positions.col(j) - center).squaredNorm();
-			visit(j, w * std::exp(std::min((reference - d2) * sharpness, maxExponent)), d2);
-		});
+		squaredDistances(center.data(), m_scratch);
+		const auto   first     = m_scratch.squaredDistance.begin();
+		const double reference = *std::min_element(first, first + m_scratch.points.size());
+		gaussianWeights(reference, sharpness, m_scratch);
+	}
+
+	// visit(j, weight, squared distance to the centre of the weights)
+	template<class Visit>
+	void forEach(const Visit& visit) const
+	{
+		for (std::size_t k = 0; k < m_scratch.points.size(); ++k)
+			visit(m_scratch.points[k], m_scratch.kernel[k], m_scratch.squaredDistance[k]);
 	}
 
 private:
-	const PointCloud&  m_cloud;
+	const PointCloud&      m_cloud;
 	const Eigen::VectorXd& m_heights;
-	Index              m_closest;
-	NeighborLists::Row m_row;
-	const double*      m_weights;
-	double             m_radius = 0.0;
+	SupportScratch&        m_scratch;
+	double                 m_radius = 0.0;
 };
 
 // Weighted means over the support, seen from c.
@@ -110,7 +164,7 @@ enum class Data { Points, FittedSurface };
 
 Means meansAt(
 	const PointCloud& cloud,
-	const Support&    support,
+	Support&          support,
 	const Vector3d&   c,
 	double            ratio,
 	Data              data = Data::Points,
@@ -119,7 +173,8 @@ Means meansAt(
 	Means        means;
 	const double floor = std::max(
 		minRadiusRatio * support.radius(), std::numeric_limits<double>::min());
-	support.forEachNear(c, ratio, [&](Index j, double w, double d2) {
+	support.weigh(c, ratio);
+	support.forEach([&](Index j, double w, double d2) {
 		if (norm == Norm::Absolute)
 			w /= std::max(std::sqrt(d2), floor);
 		const Vector3d p = data == Data::Points ? Vector3d(cloud.positions.col(j)) : support.surfacePoint(j);
@@ -139,7 +194,7 @@ Means meansAt(
 // planes as far outside: projecting along half of each normal, n_j, and half of the mean one
 // cancels the two. What is averaged are not the points but the surfaces fitted around them, at the scale the
 // noise asks for: the published projections leave a quarter of the noise, this a tenth.
-Vector3d projectMixed(const PointCloud& cloud, const Support& support, Vector3d c)
+Vector3d projectMixed(const PointCloud& cloud, Support& support, Vector3d c)
 {
 	for (int pass = 0; pass < mixedPasses; ++pass) {
 		const Means means = meansAt(cloud, support, c, kernelRatio, Data::FittedSurface);
@@ -151,7 +206,7 @@ Vector3d projectMixed(const PointCloud& cloud, const Support& support, Vector3d 
 // x <- sum_j p_j theta(r_j)/r_j / sum_j theta(r_j)/r_j, from the theta-weighted mean. Only the
 // component along the normal is applied: the rest slides the point towards the data by up to a
 // spacing.
-Vector3d projectLocallyOptimal(const PointCloud& cloud, const Support& support, Vector3d c)
+Vector3d projectLocallyOptimal(const PointCloud& cloud, Support& support, Vector3d c)
 {
 	for (int pass = 0; pass <= optimalPasses; ++pass) {
 		const Norm  norm  = pass == 0 ? Norm::Squares : Norm::Absolute;
@@ -161,7 +216,7 @@ Vector3d projectLocallyOptimal(const PointCloud& cloud, const Support& support, 
 	return c;
 }
 
-Vector3d projectToAverage(const PointCloud& cloud, const Support& support, const Vector3d& c)
+Vector3d projectToAverage(const PointCloud& cloud, Support& support, const Vector3d& c)
 {
 	const Means means = meansAt(cloud, support, c, averageRatio);
 	return c - means.averageHeight() * means.normal;
@@ -174,12 +229,12 @@ bool hasCurvature(PointStatus status)
 
 // The mean of the normals belongs to the mean of the points, which is beside c by a share of the
 // spacing. So each point gives the normal that its own curvature predicts at c: n_j + dN_j (c -
-// p_j).
+// p_j). The support is weighted about c, here and in tensorAt().
 Vector3d normalAt(
 	const PointCloud& cloud, const CurvatureField& field, const Support& support, const Vector3d& c)
 {
 	Vector3d mean = Vector3d::Zero(), turn = Vector3d::Zero();
-	support.forEachNear(c, kernelRatio, [&](Index j, double w, double) {
+	support.forEach([&](Index j, double w, double) {
 		mean += w * cloud.normals.col(j);
 		if (!hasCurvature(field.status[j]))
 			return;
@@ -222,7 +277,7 @@ TensorAt tensorAt(
 	Eigen::Matrix3d             moments = Eigen::Matrix3d::Zero();
 	Eigen::Matrix<double, 3, 6> sums    = Eigen::Matrix<double, 3, 6>::Zero();
 	const double                scale   = support.radius() > 1e-100 ? kernelRatio / support.radius() : 0.0;
-	support.forEachNear(c, kernelRatio, [&](Index j, double w, double) {
+	support.forEach([&](Index j, double w, double) {
 		if (!hasCurvature(field.status[j]))
 			return;
 		const Vector2d line       = doubledAngle(frame, cloud.normals.col(j), field.d1.col(j));
@@ -268,7 +323,7 @@ Vector3d principalDirection(
 }
 
 Vector3d projectedPosition(
-	const PointCloud& cloud, const Support& support, const Vector3d& c, ProjectionKind kind)
+	const PointCloud& cloud, Support& support, const Vector3d& c, ProjectionKind kind)
 {
 	switch (kind) {
 	case ProjectionKind::LocallyOptimal: return projectLocallyOptimal(cloud, support, c);
@@ -302,7 +357,7 @@ SurfaceSample projectToSurface(
 	Index                 closest,
 	ProjectionKind        kind)
 {
-	const Support  support(cloud, field, closest);
+	Support        support(cloud, field, closest);
 	const Vector3d site   = cloud.positions.col(closest);
 	const bool     usable = (position - site).squaredNorm() < 1e100; // false for NaN as well
 	const Vector3d start  = usable ? position : site;
@@ -310,7 +365,8 @@ SurfaceSample projectToSurface(
 	SurfaceSample sample;
 	sample.closest  = closest;
 	sample.position = projectedPosition(cloud, support, start, kind);
-	sample.normal   = normalAt(cloud, field, support, sample.position);
+	support.weigh(sample.position, kernelRatio);
+	sample.normal = normalAt(cloud, field, support, sample.position);
 
 	const TangentFrame frame(sample.normal);
 	const TensorAt     t          = tensorAt(cloud, field, support, sample.position, frame);

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <queue>
+
+#include <boost/math/tools/toms748_solve.hpp>
 
 namespace curvature_lines {
 
@@ -15,7 +18,9 @@ constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cell
 constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
 constexpr double AutomaticMax = 0.1; // bounding-box diagonals
 constexpr double TargetRange  = 2.0; // with a target, up to so many times the mean distance and down to 1 / it
-constexpr int    BisectionSteps = 20; // to 3e-5 of epsilon
+constexpr double SmallestEpsilon = 1e-12, LargestEpsilon = 1.0; // diagonals
+constexpr double EpsilonTolerance = 3e-5; // of epsilon
+constexpr std::uintmax_t MostEvaluations = 40;
 // Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
 // slices' neighbours is 1.22 / sqrt(density).
 constexpr double ShareOfSpacing = 0.67;
@@ -126,6 +131,25 @@ double predictedCrossings(
 	return sum;
 }
 
+// The epsilon, in diagonals, with which `predict` expects that many crossings: ever fewer as it grows. One of
+// the ends where there is none.
+template<class Predict>
+double epsilonFor(double crossings, const Predict& predict)
+{
+	const auto surplus = [&](double logarithm) { return std::log(predict(std::exp(logarithm)) / crossings); };
+	const double low = std::log(SmallestEpsilon), high = std::log(LargestEpsilon);
+	const double atLow = surplus(low), atHigh = surplus(high);
+	if (!(atLow > 0.0))
+		return SmallestEpsilon;
+	if (!(atHigh < 0.0))
+		return LargestEpsilon;
+	const auto     settled = [](double a, double b) { return std::abs(b - a) < EpsilonTolerance; };
+	std::uintmax_t evaluations = MostEvaluations;
+	const auto     bracket =
+		boost::math::tools::toms748_solve(surplus, low, high, atLow, atHigh, settled, evaluations);
+	return std::exp(0.5 * (bracket.first + bracket.second));
+}
+
 Bounds spacingBounds(
 	const MinimumNeighborhoods& minimum,
 	const LineTracingOptions&   options,
@@ -179,14 +203,10 @@ LineSpacing chooseLineSpacing(
 		parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon, bounds); });
 		return distance;
 	};
-	if (crossings > 0.0) {
-		double low = std::log(1e-12 * diagonal), high = std::log(diagonal);
-		for (int k = 0; k < BisectionSteps; ++k) {
-			const double middle = 0.5 * (low + high);
-			(predictedCrossings(minimum, at(std::exp(middle))) > crossings ? low : high) = middle;
-		}
-		result.epsilon = std::exp(0.5 * (low + high));
-	}
+	if (crossings > 0.0)
+		result.epsilon = diagonal * epsilonFor(crossings, [&](double epsilon) {
+			return predictedCrossings(minimum, at(epsilon * diagonal));
+		});
 	result.distance = at(result.epsilon);
 	result.epsilon /= diagonal;
 	return result;

@@ -28,6 +28,8 @@ constexpr double StripHeight = 1.5;
 // Two lines that cross and cross back within this many strip heights only touch.
 constexpr double TouchLength      = 4.0;
 constexpr Index  SpacingNeighbors = 6;
+// Below so many boxes CGAL scans instead of dividing them further; strips are flat and divide badly.
+constexpr std::ptrdiff_t ScannedBoxes = 300;
 
 struct Segment {
 	Index line, index; // index: along the line
@@ -207,20 +209,21 @@ std::vector<LineCrossing> findCrossings(
 
 	std::vector<LineCrossing> crossings;
 	std::size_t               tested = 0;
+	const auto                test   = [&](const Box& boxA, const Box& boxB) {
+        const Segment &a = boxA.info(), &b = boxB.info();
+        if (++tested % (1 << 18) == 0)
+            progress.report(0.5);
+        if (adjoin(lines, a, b))
+            return;
+        // Of a pair of lines always the same one carries the strip: its crossings are then
+        // consistent.
+        if (std::tie(a.line, a.index) < std::tie(b.line, b.index))
+            strips.pierce(a, b, crossings);
+        else
+            strips.pierce(b, a, crossings);
+	};
 	CGAL::box_self_intersection_d(
-		boxes.begin(), boxes.end(), [&](const Box& boxA, const Box& boxB) {
-			const Segment &a = boxA.info(), &b = boxB.info();
-			if (++tested % (1 << 18) == 0)
-				progress.report(0.5);
-			if (adjoin(lines, a, b))
-				return;
-			// Of a pair of lines always the same one carries the strip: its crossings are then
-			// consistent.
-			if (std::tie(a.line, a.index) < std::tie(b.line, b.index))
-				strips.pierce(a, b, crossings);
-			else
-				strips.pierce(b, a, crossings);
-		});
+		boxes.begin(), boxes.end(), test, CGAL::Box_intersection_d::Box_traits_d<Box>(), ScannedBoxes);
 	std::sort(crossings.begin(), crossings.end(), [](const LineCrossing& a, const LineCrossing& b) {
 		return std::tie(a.line[0], a.line[1], a.parameter[0], a.parameter[1]) <
 			   std::tie(b.line[0], b.line[1], b.parameter[0], b.parameter[1]);

@@ -6,9 +6,10 @@
 
 namespace curvature_lines {
 
-// Triangles without an edge longer than the `longestEdge` (N, lengths) of both its ends, sorted by their vertices; oriented alike where they
-// hang together, to either side.
-std::vector<Triangle>
-advancingFront(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& longestEdge);
+// Triangles without an edge longer than the `longestEdge` (N, lengths) of both its ends, sorted by their
+// vertices; oriented alike where they hang together, to either side. Points whose `normals` (3 x N, unit, or
+// zero where there is none) oppose each other are of two sheets, and joined only where nothing else is left.
+std::vector<Triangle> advancingFront(
+	const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals, const Eigen::VectorXd& longestEdge);
 
 } // namespace curvature_lines

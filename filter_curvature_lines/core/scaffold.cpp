@@ -257,7 +257,7 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	scaffold.cell    = cell;
 
 	const std::vector<Triangle> front =
-		advancingFront(sites.points, options.longestEdge * localDistances(sites.points, distance));
+		advancingFront(sites.points, sites.normals, options.longestEdge * localDistances(sites.points, distance));
 	std::vector<Index>    copies;
 	std::vector<Triangle> triangles =
 		manifoldPart(front, static_cast<Index>(sites.points.cols()), copies);

@@ -22,7 +22,7 @@ endfunction()
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 require_package(Eigen3 libeigen3-dev NO_MODULE)
 require_package(nanoflann libnanoflann-dev)
-# Exact numbers by Boost, headers only: MeshLab does not bring GMP and MPFR, and their archives do not fit into a plugin.
+# Boost comes with CGAL, headers only. Exact numbers by it: MeshLab does not bring GMP and MPFR, and their archives do not fit into a plugin.
 set(CGAL_DISABLE_GMP ON)
 require_package(CGAL libcgal-dev)
 require_package(OpenMP g++)

@@ -162,10 +162,11 @@ double IrlsSolver::scale(const IrlsOptions& options, double& squaredQuantile)
 		 [=](std::size_t counted) { return std::min(static_cast<std::size_t>(place), counted - 1); },
 		 m_scratch);
 	squaredQuantile = middle.value;
-	const double value = std::sqrt(std::max(middle.value, 0.0));
+	double value    = std::sqrt(std::max(middle.value, 0.0));
 	// The mean of the two middle residuals when their number is even.
-	const double between = value + (place - std::floor(place)) * (std::sqrt(middle.next) - value);
-	return std::max(options.sigmaFactor * between, exactResidual);
+	if (const double part = place - std::floor(place); part > 0.0)
+		value += part * (std::sqrt(std::max(middle.next, 0.0)) - value);
+	return std::max(options.sigmaFactor * value, exactResidual);
 }
 
 const IrlsFit& IrlsSolver::fit(

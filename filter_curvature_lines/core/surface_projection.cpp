@@ -31,7 +31,7 @@ constexpr double noisyShare     = 0.9;  // even if that much of the cloud has no
 constexpr double mostNoise      = 2.5;  // over that quantile: four standard deviations
 constexpr double maxBeside      = 1.0;  // kernel widths between c and the mean point that are extrapolated
 
-// Of one support; kept by each thread.
+// Of the support at hand, one at a time in each thread.
 struct SupportScratch {
 	std::vector<Index>  points;
 	std::vector<double> statistical, kernel, squaredDistance;

@@ -157,7 +157,7 @@ std::vector<Index> indicesOf(const std::vector<DistanceIndex>& found)
 	return indices;
 }
 
-constexpr int sliceCount = 6;
+constexpr int sliceCount = 6; // see sliceOf()
 
 constexpr double minAgreement = 0.25;
 
@@ -177,10 +177,14 @@ std::vector<Index> sameSheet(const PointCloud& cloud, Index i, const Index* firs
 // Slice 0 is centred on the direction `axis`.
 int sliceOf(const Eigen::Vector2d& d, const Eigen::Vector2d& axis)
 {
-	const double angle = std::atan2(axis.x() * d.y() - axis.y() * d.x(), axis.dot(d));
-	const double turn  = angle / (2.0 * EIGEN_PI) + 0.5 / sliceCount; // in slices' share of a turn
-	const int    slice = static_cast<int>(std::floor((turn < 0.0 ? turn + 1.0 : turn) * sliceCount));
-	return std::min(slice, sliceCount - 1);
+	// Turned by half a slice, where it is is told by the sides of three lines: cheaper than its angle.
+	static const double   root3   = std::sqrt(3.0);
+	const double          along   = axis.dot(d), across = axis.x() * d.y() - axis.y() * d.x();
+	const Eigen::Vector2d turned  = {root3 * along - across, along + root3 * across};
+	const bool            upper   = turned.y() > 0.0 || (turned.y() == 0.0 && turned.x() >= 0.0);
+	const double          x = root3 * (upper ? turned.x() : -turned.x()), y = std::abs(turned.y());
+	const int             inHalf = x > y || y == 0.0 ? 0 : -x < y ? 1 : 2;
+	return upper ? inHalf : inHalf + sliceCount / 2;
 }
 
 // The projected-closest candidate of each slice, -1 where there is none within `reach` (3-D). The papers

@@ -194,21 +194,18 @@ LineSpacing chooseLineSpacing(
 	const double diagonal = extent.norm();
 	const Bounds bounds   = spacingBounds(minimum, options, diagonal, crossings);
 
-	LineSpacing result;
-	result.diagonal = diagonal;
-	result.epsilon  = options.epsilon * diagonal;
 	const GradedDistances graded(cloud, field, minimum, options.gradation);
 	const auto at = [&](double epsilon) {
 		std::array<std::vector<double>, 2> distance;
-		parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon, bounds); });
+		parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon * diagonal, bounds); });
 		return distance;
 	};
-	if (crossings > 0.0)
-		result.epsilon = diagonal * epsilonFor(crossings, [&](double epsilon) {
-			return predictedCrossings(minimum, at(epsilon * diagonal));
-		});
+	const auto predict = [&](double epsilon) { return predictedCrossings(minimum, at(epsilon)); };
+
+	LineSpacing result;
+	result.diagonal = diagonal;
+	result.epsilon  = crossings > 0.0 ? epsilonFor(crossings, predict) : options.epsilon;
 	result.distance = at(result.epsilon);
-	result.epsilon /= diagonal;
 	return result;
 }
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/curvature_driven_projection.h"
-#include "core/m_weighted_curvature.h"
-#include "core/moving_least_squares.h"
-#include "core/ray_tracing.h"
-#include "core/spatial_order.h"
+#include "curvature_driven_projection.h"
+#include "m_weighted_curvature.h"
+#include "moving_least_squares.h"
+#include "ray_tracing.h"
+#include "spatial_order.h"
 
 #include "peers/cloud_file.h"
 

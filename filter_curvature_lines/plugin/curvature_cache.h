@@ -13,8 +13,8 @@
 
 #include "layer_conversion.h"
 
-#include "core/curvature_estimate.h"
-#include "core/umbilics.h"
+#include "curvature_estimate.h"
+#include "umbilics.h"
 
 namespace curvature_lines {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature_output.h"
 
-#include "core/curvature_colors.h"
+#include "curvature_colors.h"
 
 namespace curvature_lines {
 

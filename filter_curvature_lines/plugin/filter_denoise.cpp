@@ -5,7 +5,7 @@
 #include "filter_table.h"
 #include "help_text.h"
 
-#include "core/denoising.h"
+#include "denoising.h"
 
 namespace curvature_lines {
 

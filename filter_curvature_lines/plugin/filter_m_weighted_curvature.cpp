@@ -4,7 +4,7 @@
 #include "filter_table.h"
 #include "help_text.h"
 
-#include "core/m_weighted_curvature.h"
+#include "m_weighted_curvature.h"
 
 namespace curvature_lines {
 

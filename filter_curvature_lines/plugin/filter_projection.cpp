@@ -6,7 +6,7 @@
 #include "filter_table.h"
 #include "help_text.h"
 
-#include "core/curvature_driven_projection.h"
+#include "curvature_driven_projection.h"
 
 namespace curvature_lines {
 

@@ -8,12 +8,12 @@
 #include "filter_table.h"
 #include "help_text.h"
 
-#include "core/curvature_colors.h"
-#include "core/curvature_driven_projection.h"
-#include "core/m_weighted_curvature.h"
-#include "core/moving_least_squares.h"
-#include "core/spatial_order.h"
-#include "core/surface_picture.h"
+#include "curvature_colors.h"
+#include "curvature_driven_projection.h"
+#include "m_weighted_curvature.h"
+#include "moving_least_squares.h"
+#include "spatial_order.h"
+#include "surface_picture.h"
 
 namespace curvature_lines {
 

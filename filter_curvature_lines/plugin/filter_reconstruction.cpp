@@ -7,8 +7,8 @@
 #include "polygon_layer.h"
 #include "polyline_layer.h"
 
-#include "core/normal_estimation.h"
-#include "core/reconstruction.h"
+#include "normal_estimation.h"
+#include "reconstruction.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,7 @@
 #include "filter_table.h"
 #include "help_text.h"
 
-#include "core/outlier_rejection.h"
+#include "outlier_rejection.h"
 
 namespace curvature_lines {
 

@@ -6,7 +6,7 @@
 #include "help_text.h"
 #include "polyline_layer.h"
 
-#include "core/robust_denoising.h"
+#include "robust_denoising.h"
 
 namespace curvature_lines {
 

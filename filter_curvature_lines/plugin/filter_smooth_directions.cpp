@@ -3,7 +3,7 @@
 #include "filter_table.h"
 #include "help_text.h"
 
-#include "core/direction_smoothing.h"
+#include "direction_smoothing.h"
 
 namespace curvature_lines {
 

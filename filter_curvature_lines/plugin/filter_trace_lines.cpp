@@ -6,7 +6,7 @@
 #include "help_text.h"
 #include "polyline_layer.h"
 
-#include "core/reconstruction.h"
+#include "reconstruction.h"
 
 namespace curvature_lines {
 

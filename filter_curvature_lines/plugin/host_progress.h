@@ -5,7 +5,7 @@
 
 #include <wrap/callback.h>
 
-#include "core/progress.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

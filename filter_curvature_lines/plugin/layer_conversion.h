@@ -5,7 +5,7 @@
 
 #include <common/ml_document/mesh_document.h>
 
-#include "core/robust_curvature.h"
+#include "robust_curvature.h"
 
 namespace curvature_lines {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/polygon_splitting.h"
+#include "polygon_splitting.h"
 
 namespace curvature_lines {
 

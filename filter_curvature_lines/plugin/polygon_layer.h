@@ -7,7 +7,7 @@
 #include "filter_results.h"
 #include "parameters.h"
 
-#include "core/quad_mesh.h"
+#include "quad_mesh.h"
 
 namespace curvature_lines {
 

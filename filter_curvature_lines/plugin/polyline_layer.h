@@ -5,8 +5,8 @@
 
 #include <common/ml_document/mesh_document.h>
 
-#include "core/creases.h"
-#include "core/line_tracing.h"
+#include "creases.h"
+#include "line_tracing.h"
 
 namespace curvature_lines {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "analytic_surfaces.h"
-#include "core/curvature_estimate.h"
+#include "curvature_estimate.h"
 
 namespace curvature_lines::test {
 

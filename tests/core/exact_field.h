@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/robust_curvature.h"
-#include "sample_data/analytic_surfaces.h"
+#include "robust_curvature.h"
+#include "analytic_surfaces.h"
 
 namespace curvature_lines::test {
 

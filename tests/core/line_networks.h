@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "analytic_surfaces.h"
-#include "core/line_tracing.h"
+#include "line_tracing.h"
 
 namespace curvature_lines::tests {
 

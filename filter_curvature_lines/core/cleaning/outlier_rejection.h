@@ -1,0 +1,34 @@
+// Outlier rejection: the published votes between operating regions (A09 section 4.1), or the votes of
+// larger robust quadrics by height, which also see outliers in clusters and with plausible normals.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "outlier_result.h"
+#include "robust_curvature.h"
+
+namespace curvature_lines {
+
+struct OutlierOptions {
+	enum class Mode { Robust, Paper };
+	Mode   mode        = Mode::Robust;
+	double sensitivity = 3.5; // Robust: rejected beyond this many noise units from the surface
+	Index  rounds      = 3;   // Robust: re-estimation without the points rejected before, at most
+	// Paper: rejected when more than this share of the votes is against (A09: 1/2).
+	double                     voteThreshold = 0.5;
+	MinimumNeighborhoodOptions neighborhood;
+	RobustCurvatureOptions     curvature;
+};
+
+// The published vote for one given curvature field, one round: a point is flagged when more than
+// voteThreshold of its votes are against, or when it is Isolated. W_a[b] > 0 and W_b[a] = 0 is b's vote
+// against a; both > 0 is a vote for a (R07 prints the opposite by a copy error).
+OutlierResult voteOutliers(
+	const CurvatureField& field,
+	double                voteThreshold);
+
+OutlierResult rejectOutliers(
+	const PointCloud&     cloud,
+	const OutlierOptions& options  = {},
+	const Progress&       progress = {});
+
+} // namespace curvature_lines

@@ -1,0 +1,487 @@
+// Noise and radius from leave-one-out residuals of blended patches, and patches that stop at edges.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "robust_denoising.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "gate_normals.h"
+#include "local_noise.h"
+#include "local_spacing.h"
+#include "patch_blend.h"
+#include "quantile.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Support = BlendOptions::Support;
+
+constexpr const char* stage = "Denoising";
+
+// Radii in local spacings, or in units of which the cloud has as many in the middle.
+constexpr double smallestRadius  = 2.5; // 20 points: a quadric with some to spare
+constexpr double noiseStep       = 1.26;
+constexpr double noiseSettled    = 1.02; // growth of a smallest radius that is not worth a step
+constexpr double minRadiusNoise  = 5.0; // a patch narrower than this many noise units is all noise
+constexpr double freeStep        = 1.4;
+constexpr double maxFreeRadius   = 15.0;
+constexpr double freeTolerance   = 1.02; // of scores over the best: the end of a ladder
+constexpr double bentStep        = 1.12;
+constexpr double bentStart       = 0.8; // of the free radius
+constexpr double maxBentRadius   = 25.0;
+constexpr double bentTolerance   = 1.01;
+// Scores as good as the same: the wider patch has less variance.
+constexpr double bentTie         = 1.001;
+constexpr double gatedStep       = 1.3;
+constexpr double maxGatedRadius  = 17.0;
+constexpr double gatedTolerance  = 1.015;
+constexpr double minPilotRadius  = 3.2;
+constexpr double pilotNoise      = 8.0; // noise units across which an edge is told from noise
+constexpr double maxFlagRadius   = 6.3;
+constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
+constexpr double fewPoints       = 0.1; // share of the points that a ladder does not wait for
+// Bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2.
+constexpr double unitExponent    = 0.2; // of noise times spacing
+
+constexpr Index  fewestPoints    = 8; // a quadric and a residual
+constexpr Index  testPoints      = 5000;
+constexpr double testOverlap     = 19.0;
+constexpr double maxResidual     = 3.0; // noise units, in scores
+constexpr double minPurity       = 0.5; // of a point that tells about smooth surfaces
+constexpr double edgePurity      = 0.01; // of a point beside an edge without doubt
+constexpr double fewEdges        = 0.01; // share of such points
+constexpr double minPlainShare   = 0.1;
+constexpr double strictPurity    = 2.0;
+constexpr double mildPurity      = 1.0;
+constexpr double pilotAcceptance = 2.0; // noise units
+constexpr double gatedAcceptance = 3.0;
+constexpr double sharpPurity     = 0.5; // of smooth patches, below which edges are looked for
+constexpr double sameSide        = 1e-3; // least weight of a neighbour across an edge
+constexpr Index  gainNeighbors   = 24;
+constexpr double smoothGain      = 0.1; // of a squared residual by gates: below it the gate only costs
+constexpr double sharpGain       = 0.3; // above it, it is an edge
+
+// Ladders end where the data say: every rung takes a share of what is left of their time.
+Progress rung(const Progress& progress, int k)
+{
+	constexpr double left = 0.75;
+	return progress.sub(1.0 - std::pow(left, k), 1.0 - std::pow(left, k + 1), stage);
+}
+
+struct Candidate {
+	std::vector<double> radius; // per point, of its patches: a length
+	PatchBlend          blend;
+	std::vector<double> loss; // per point: squared leave-one-out residual in noise units, limited
+};
+
+class RobustDenoiser {
+public:
+	RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options);
+	RobustDenoisingResult run(const Progress& progress);
+
+private:
+	Index      size() const { return m_input.cloud.size(); }
+	void       prepare(const Progress& progress);
+	void       findNoise(const Progress& progress);
+	void       findPlainPoints(const Progress& progress);
+	double     freeRadius(const Progress& progress) const;
+	double     bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
+	Candidate  smoothCandidate(const Progress& progress) const;
+	PatchBlend edgePilot(
+		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
+	BlendOptions gatedOptions(std::vector<double> radius) const;
+	Candidate  sharpCandidate(
+		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
+	std::vector<double> pilotRadii(const Candidate& smooth) const;
+	std::vector<double> sharpShare(
+		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
+	void       sharpen(Candidate& smooth, const Progress& progress) const;
+	void       leaveStrays(PatchBlend& blend) const;
+	bool       fits(const std::vector<double>& radii) const;
+	void       findUnits();
+	std::vector<double> radii(double factor) const; // of units
+	std::vector<double> inSpacings(const std::vector<double>& lengths) const;
+	Candidate  candidate(
+		const BlendGuide&         guide,
+		const BlendOptions&       options,
+		const std::vector<Index>& targets,
+		const Progress&           progress) const;
+	double score(const Candidate& candidate, const std::vector<Index>& points) const;
+
+	RobustDenoisingOptions m_options;
+	BlendInput             m_input;
+	std::optional<BlendGuide> m_start;         // the input itself
+	std::vector<Index>     m_everywhere;       // all points
+	std::vector<Index>     m_test;             // points that scores are taken from
+	std::vector<Index>     m_plain;            // of m_test, off the edges
+	std::vector<double>    m_least;            // radius per point, a length: wider than the noise
+	std::vector<double>    m_unit;             // of radii per point, a length
+};
+
+RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
+		m_options(options),
+		m_input{SpatialOrder(cloud.positions), {}, {}, {}},
+		m_everywhere(cloud.size()),
+		m_test(m_input.order.sample(testPoints)),
+		m_plain(m_test)
+{
+	m_input.cloud = {
+		m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
+	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
+}
+
+void RobustDenoiser::prepare(const Progress& progress)
+{
+	const PointCloud&    cloud = m_input.cloud;
+	const NeighborSearch search(cloud.positions);
+	m_input.spacing = localSpacing(cloud, search, m_input.order, progress.sub(0.0, 0.5, stage));
+	// Only the side of the normals matters, and that of a single one may be wrong.
+	Eigen::Matrix3Xd normals = gateNormals(cloud, search, progress.sub(0.5, 1.0, stage));
+	for (Index i = 0; i < size(); ++i)
+		if (cloud.normals.col(i).dot(normals.col(i)) > 0.0)
+			normals.col(i) = cloud.normals.col(i);
+	m_start.emplace(cloud.positions, std::move(normals));
+}
+
+std::vector<double> RobustDenoiser::inSpacings(const std::vector<double>& lengths) const
+{
+	std::vector<double> ratios(lengths.size());
+	for (Index i = 0; i < size(); ++i)
+		ratios[i] = lengths[i] / m_input.spacing[i];
+	return ratios;
+}
+
+bool RobustDenoiser::fits(const std::vector<double>& radii) const
+{
+	double points = 0.0;
+	for (const double ratio : inSpacings(radii))
+		points += ratio * ratio;
+	return points * fewestPatches <= double(size()) * double(size());
+}
+
+std::vector<double> RobustDenoiser::radii(double factor) const
+{
+	std::vector<double> result(size());
+	for (Index i = 0; i < size(); ++i)
+		result[i] = m_options.radius > 0.0 ? factor * m_input.spacing[i] :
+											 std::max(factor * m_unit[i], m_least[i]);
+	return result;
+}
+
+Candidate RobustDenoiser::candidate(
+	const BlendGuide&         guide,
+	const BlendOptions&       options,
+	const std::vector<Index>& targets,
+	const Progress&           progress) const
+{
+	Candidate c{options.radius, blendPatches(m_input, guide, options, targets, progress), {}};
+	c.loss.reserve(size());
+	for (Index i = 0; i < size(); ++i) {
+		const double e = std::min(std::abs(c.blend.residual[i]) / m_input.noise[i], maxResidual);
+		c.loss.push_back(e * e);
+	}
+	return c;
+}
+
+double RobustDenoiser::score(const Candidate& candidate, const std::vector<Index>& points) const
+{
+	double sum = 0.0;
+	for (const Index i : points)
+		sum += candidate.loss[i];
+	return sum / double(points.size());
+}
+
+void RobustDenoiser::findNoise(const Progress& progress)
+{
+	m_input.noise.assign(size(), m_options.noise);
+	m_least = m_input.spacing;
+	for (double& radius : m_least)
+		radius *= smallestRadius;
+	BlendOptions options;
+	options.overlap = testOverlap;
+	for (int k = 0;; ++k) {
+		if (m_options.noise <= 0.0) {
+			options.radius = m_least;
+			m_input.noise  = localNoise(
+				blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
+				m_input.cloud,
+				m_input.order);
+		}
+		std::vector<double> wider(size());
+		Index               grown = 0;
+		for (Index i = 0; i < size(); ++i) {
+			wider[i] = std::clamp(minRadiusNoise * m_input.noise[i], m_least[i], noiseStep * m_least[i]);
+			grown += wider[i] > noiseSettled * m_least[i];
+		}
+		if (double(grown) <= fewPoints * double(size()) || !fits(wider))
+			return;
+		m_least = std::move(wider);
+	}
+}
+
+// Where points are dense or noisy patches of the same size in spacings are not equally good.
+void RobustDenoiser::findUnits()
+{
+	m_unit.resize(size());
+	for (Index i = 0; i < size(); ++i)
+		m_unit[i] = std::pow(m_input.noise[i] * m_input.spacing[i], unitExponent);
+	const double middle = quantile(inSpacings(m_unit), 0.5);
+	for (double& unit : m_unit)
+		unit /= middle;
+}
+
+// Edges would make any wide patch look wrong, and the whole cloud would be smoothed too little.
+void RobustDenoiser::findPlainPoints(const Progress& progress)
+{
+	BlendOptions options;
+	options.purity = strictPurity;
+	options.radius = m_least;
+	for (Index i = 0; i < size(); ++i)
+		options.radius[i] = std::max(
+			m_least[i],
+			std::clamp(
+				pilotNoise * m_input.noise[i],
+				minPilotRadius * m_input.spacing[i],
+				maxFlagRadius * m_input.spacing[i]));
+	const PatchBlend blend = blendPatches(m_input, *m_start, options, m_test, progress);
+	std::vector<Index> plain;
+	Index              clear = 0;
+	for (const Index i : m_test) {
+		if (blend.purity[i] > minPurity)
+			plain.push_back(i);
+		clear += blend.purity[i] < edgePurity;
+	}
+	// To leave out the points that are noisy by chance would favour the radius they were told at.
+	const double share = 1.0 / double(m_test.size());
+	if (share * clear > fewEdges && share * double(plain.size()) > minPlainShare)
+		m_plain = std::move(plain);
+}
+
+double RobustDenoiser::freeRadius(const Progress& progress) const
+{
+	const double widest = m_options.radius > 0.0 ? m_options.radius : maxFreeRadius;
+	BlendOptions options;
+	options.purity  = strictPurity;
+	options.overlap = testOverlap;
+	std::vector<double> first(size());
+	for (Index i = 0; i < size(); ++i)
+		first[i] = m_least[i] / m_unit[i];
+	double factor = quantile(first, fewPoints);
+	double best = std::numeric_limits<double>::infinity(), radius = factor;
+	for (int k = 0; factor < widest; ++k, factor *= freeStep) {
+		options.radius = radii(factor);
+		const double s = score(candidate(*m_start, options, m_test, rung(progress, k)), m_plain);
+		if (s < best)
+			radius = factor;
+		best = std::min(best, s);
+		if (s > freeTolerance * best || !fits(options.radius))
+			break;
+	}
+	return radius;
+}
+
+double RobustDenoiser::bentRadius(
+	const BlendGuide& guide, double start, const Progress& progress) const
+{
+	if (m_options.radius > 0.0)
+		return m_options.radius;
+	BlendOptions options;
+	options.support = Support::Bent;
+	options.purity  = mildPurity;
+	options.overlap = testOverlap;
+	double best = std::numeric_limits<double>::infinity(), radius = start;
+	for (int k = 0; start < maxBentRadius; ++k, start *= bentStep) {
+		options.radius = radii(start);
+		const double s = score(candidate(guide, options, m_test, rung(progress, k)), m_plain);
+		best = std::min(best, s);
+		if (s <= bentTie * best)
+			radius = start;
+		if (s > bentTolerance * best || !fits(options.radius))
+			break;
+	}
+	return radius;
+}
+
+Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
+{
+	double       factor = freeRadius(progress.sub(0.0, 0.2, stage));
+	BlendOptions options;
+	options.radius = radii(factor);
+	options.purity = strictPurity;
+	Candidate c    = candidate(*m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
+	options.support = Support::Bent;
+	options.purity  = mildPurity;
+	double start    = bentStart * factor;
+	for (int pass = 0; pass < 2; ++pass) {
+		const BlendGuide guide(c.blend.positions, c.blend.normals);
+		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
+		factor         = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
+		options.radius = radii(factor);
+		c              = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
+		start          = factor / bentStep;
+	}
+	return c;
+}
+
+std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
+{
+	std::vector<double> result(size());
+	for (Index i = 0; i < size(); ++i) {
+		const double wide = std::max(minPilotRadius * m_input.spacing[i], pilotNoise * m_input.noise[i]);
+		result[i]         = std::max(m_least[i], std::min(wide, smooth.radius[i]));
+	}
+	return result;
+}
+
+// A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth
+// surface is the best there is.
+PatchBlend RobustDenoiser::edgePilot(
+	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
+{
+	BlendOptions options;
+	options.radius     = pilotRadii(smooth);
+	options.purity     = strictPurity;
+	options.acceptance = pilotAcceptance;
+	const PatchBlend free =
+		blendPatches(m_input, *m_start, options, targets, progress.sub(0.0, 0.5, stage));
+	Eigen::Matrix3Xd positions = smooth.blend.positions, normals = smooth.blend.normals;
+	for (const Index i : targets) {
+		positions.col(i) = free.positions.col(i);
+		normals.col(i)   = free.normals.col(i);
+	}
+	const BlendGuide guide(std::move(positions), std::move(normals));
+	return blendPatches(
+		m_input, guide, gatedOptions(options.radius), targets, progress.sub(0.5, 1.0, stage));
+}
+
+BlendOptions RobustDenoiser::gatedOptions(std::vector<double> radius) const
+{
+	BlendOptions options;
+	options.support    = Support::Gated;
+	options.radius     = std::move(radius);
+	options.gateWidth  = m_options.sharpness;
+	options.purity     = mildPurity;
+	options.acceptance = gatedAcceptance;
+	return options;
+}
+
+Candidate RobustDenoiser::sharpCandidate(
+	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
+{
+	PatchBlend   pilot   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
+	BlendOptions options = gatedOptions(pilotRadii(smooth));
+	const Progress ladder = progress.sub(0.2, 0.9, stage);
+	const double last  = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
+	double       bestScore = std::numeric_limits<double>::infinity();
+	Candidate    best;
+	for (int k = 0;; ++k) {
+		const BlendGuide guide(pilot.positions, pilot.normals);
+		Candidate        c = candidate(guide, options, targets, rung(ladder, k));
+		const double     s = score(c, targets);
+		pilot              = c.blend;
+		if (s < bestScore) {
+			bestScore = s;
+			best      = std::move(c);
+		}
+		for (double& radius : options.radius)
+			radius *= gatedStep;
+		if (s > gatedTolerance * bestScore || quantile(inSpacings(options.radius), 0.5) > last ||
+			!fits(options.radius))
+			break;
+	}
+	options.radius = best.radius;
+	options.edges  = true;
+	const BlendGuide guide(best.blend.positions, best.blend.normals);
+	best.blend.positions =
+		blendPatches(m_input, guide, options, targets, progress.sub(0.9, 1.0, stage)).positions;
+	return best;
+}
+
+// Share of the gated patches in a point: how much better they explain it and its neighbours on the
+// same side of an edge than smooth patches do.
+std::vector<double> RobustDenoiser::sharpShare(
+	const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const
+{
+	const auto       n = static_cast<Index>(targets.size());
+	Eigen::Matrix3Xd places(3, n);
+	for (Index t = 0; t < n; ++t)
+		places.col(t) = sharp.blend.positions.col(targets[t]);
+	const NeighborSearch search(places);
+	std::vector<double>  share(n);
+	parallelFor(n, {}, [&](Index t) {
+		const Eigen::Vector3d normal = sharp.blend.normals.col(targets[t]);
+		double                gain = 0.0, weights = 0.0;
+		for (const Index k : search.nearest(places.col(t), gainNeighbors)) {
+			const Index  j = targets[k];
+			const double w = std::max(sameSide, normal.dot(sharp.blend.normals.col(j)) - 0.5);
+			gain += w * (smooth.loss[j] - sharp.loss[j]);
+			weights += w;
+		}
+		share[t] = std::clamp((gain / weights - smoothGain) / (sharpGain - smoothGain), 0.0, 1.0);
+	});
+	return share;
+}
+
+void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
+{
+	std::vector<Index> targets;
+	for (Index i = 0; i < size(); ++i)
+		if (smooth.blend.purity[i] < sharpPurity)
+			targets.push_back(i);
+	if (targets.empty())
+		return;
+	const Candidate           sharp = sharpCandidate(smooth, targets, progress);
+	const std::vector<double> share = sharpShare(smooth, sharp, targets);
+	for (std::size_t t = 0; t < targets.size(); ++t) {
+		const Index           i = targets[t];
+		const Eigen::Vector3d n = (1.0 - share[t]) * smooth.blend.normals.col(i) +
+								  share[t] * sharp.blend.normals.col(i);
+		smooth.blend.positions.col(i) = (1.0 - share[t]) * smooth.blend.positions.col(i) +
+										share[t] * sharp.blend.positions.col(i);
+		if (n.norm() > 0.0)
+			smooth.blend.normals.col(i) = n.normalized();
+	}
+}
+
+// It is an outlier, or was taken for one of another face.
+void RobustDenoiser::leaveStrays(PatchBlend& blend) const
+{
+	for (Index i = 0; i < size(); ++i)
+		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > farthestMove(m_input, i))
+			blend.positions.col(i) = m_input.cloud.positions.col(i);
+}
+
+RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
+{
+	prepare(progress.sub(0.0, 0.05, stage));
+	findNoise(progress.sub(0.05, 0.15, stage));
+	findUnits();
+	findPlainPoints(progress.sub(0.15, 0.2, stage));
+	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
+	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
+
+	leaveStrays(cleaned.blend);
+
+	RobustDenoisingResult result;
+	result.positions = m_input.order.restore(cleaned.blend.positions);
+	result.normals   = m_input.order.restore(cleaned.blend.normals);
+	result.noise     = quantile(m_input.noise, 0.5);
+	result.radius    = quantile(inSpacings(cleaned.radius), 0.5);
+	return result;
+}
+
+} // namespace
+
+RobustDenoisingResult denoiseRobustly(
+	const PointCloud& cloud, const RobustDenoisingOptions& options, const Progress& progress)
+{
+	if (cloud.size() < fewestPoints)
+		return {cloud.positions, cloud.normals, options.noise, options.radius};
+	return RobustDenoiser(cloud, options).run(progress);
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,21 @@
+// Outliers by the votes of overlapping robust quadrics: the vote of A09 section 4.1 with voters of more
+// points than a cluster of outliers has, and with height in place of normals, which outliers spoil.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "outlier_result.h"
+#include "progress.h"
+
+namespace curvature_lines {
+
+// OutlierOptions::Mode::Robust. Looks at positions only. The same for any order of the points.
+OutlierResult rejectByRobustVotes(
+	const Eigen::Matrix3Xd& positions, // unit frame
+	double                  sensitivity,
+	Index                   rounds,
+	const Progress&         progress = {});
+
+// The same voters' median deviation from the points around them (length).
+double surfaceNoise(const Eigen::Matrix3Xd& positions, const Progress& progress = {});
+
+} // namespace curvature_lines

@@ -1,0 +1,17 @@
+// Lengths of creases.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crease_curves.h"
+
+namespace curvature_lines {
+
+double CreaseCurve::length() const
+{
+	double sum = 0.0;
+	for (Index v = 1; v < size(); ++v)
+		sum += (positions.col(v) - positions.col(v - 1)).norm();
+	if (closed && size() > 2)
+		sum += (positions.col(0) - positions.col(size() - 1)).norm();
+	return sum;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,98 @@
+// Curves between corners: traced, joined over gaps, cut and extended at the corners, evenly resampled.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "creases.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "crease_network.h"
+#include "shuffled_order.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr const char* progressLabel = "Finding creases";
+
+constexpr double followShare     = 0.6; // of the smallest angle
+constexpr double autoSpacing     = 0.7; // median point spacings
+constexpr double finest          = 0.05;
+constexpr Index  shapeNeighbors  = 28;
+constexpr int    shapeIterations = 3;
+constexpr double firstGate       = 0.5; // differences of normals
+constexpr double lastGate        = 0.25;
+
+// The points in an order of their own, with the shape operator their normals tell: of those around that vary
+// linearly with the place, as they do on one side of a crease.
+std::vector<SurfaceElement>
+elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
+{
+	std::vector<SurfaceElement> elements(cloud.size());
+	for (Index i = 0; i < cloud.size(); ++i) {
+		elements[i].position = cloud.positions.col(i);
+		elements[i].normal   = cloud.normals.col(i);
+		elements[i].valid    = true;
+	}
+	std::vector<Eigen::Matrix3d> shapes(cloud.size(), Eigen::Matrix3d::Zero());
+	parallelForPoints(search, progress, [&](Index i) {
+		const SurfaceElement&    own    = elements[i];
+		const std::vector<Index> near   = search.nearest(own.position, shapeNeighbors);
+		const double             radius = 1.05 * (elements[near.back()].position - own.position).norm();
+		thread_local std::vector<Index> same;
+		LocalSurfaceFitter&             fitter = LocalSurfaceFitter::ofThisThread();
+		SurfaceElement                  fit  = own;
+		double                          gate = firstGate;
+		for (int it = 0; it < shapeIterations; ++it, gate = std::max(lastGate, 0.5 * gate)) {
+			same.clear();
+			for (const Index j : near) {
+				const Eigen::Vector3d predicted =
+					fit.normal + fit.shape * (elements[j].position - own.position);
+				if ((elements[j].normal - predicted).norm() < gate)
+					same.push_back(j);
+			}
+			SurfaceElement start = own;
+			start.normal         = fit.normal;
+			fitter.takeBall(cloud, same, own.position, radius);
+			const SurfaceElement next = fitter.fitNormals(start, 1, false);
+			if (!next.valid)
+				break;
+			fit = next;
+		}
+		shapes[i] = fit.shape;
+	});
+	for (Index i = 0; i < cloud.size(); ++i)
+		elements[i].shape = shapes[i];
+	return elements;
+}
+
+} // namespace
+
+Creases findCreases(
+	const PointCloud&           cloud,
+	const MinimumNeighborhoods& minimum,
+	const CreaseOptions&        options,
+	const Progress&             progress)
+{
+	if (cloud.size() == 0 || !(minimum.medianSpacing > 0.0))
+		return {};
+	const double             minAngle = options.minAngle * EIGEN_PI / 180.0;
+	const double             step     = autoSpacing * minimum.medianSpacing;
+	const double             spacing =
+		options.spacing > 0.0 ? std::max(options.spacing, finest * minimum.medianSpacing) : step;
+	const std::vector<Index> order    = shuffledOrder(cloud.positions);
+	PointCloud               shuffled = cloud;
+	for (std::size_t k = 0; k < order.size(); ++k) {
+		shuffled.positions.col(k) = cloud.positions.col(order[k]);
+		shuffled.normals.col(k)   = cloud.normals.col(order[k]);
+	}
+	const NeighborSearch search(shuffled.positions);
+	const auto           elements = elementsOf(shuffled, search, progress.sub(0.0, 0.3, progressLabel));
+	const CreasePoints   points =
+		findCreasePoints(elements, search, followShare * minAngle, progress.sub(0.3, 0.9, progressLabel));
+	CreaseTracing tracing(points);
+	return creaseNetwork(tracing, tracing.traceAll(step, minAngle), step, spacing);
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,55 @@
+// Estimates at a sample of the points, spread over all.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "local_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "local_spacing.h"
+#include "quantile.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr Index  noisePlaces     = 500;
+constexpr Index  noiseNeighbors  = 8;    // places that a point takes its noise from
+constexpr Index  noisePatches    = 300;  // a place takes its noise from,
+constexpr double noiseShare      = 0.04; // or this share of all
+constexpr double minNoise        = 1e-10; // a length: of exact samples
+constexpr Index  fewPoints       = 1000;
+
+// A lower quantile, and how many standard deviations it is below the mean of a normal distribution.
+struct Quantile {
+	double share, below;
+};
+// A patch needs twenty points: in a small cloud it is half as wide as a part of it, and few lie off the edges.
+constexpr Quantile quartile = {0.25, 0.6744898}, tenth = {0.1, 1.2815516};
+
+} // namespace
+
+// Noise varies over a cloud. The lower quantile of many patches belongs to those off the edges; chi-squared
+// quantile by Wilson and Hilferty.
+std::vector<double> localNoise(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
+{
+	if (blend.center.empty())
+		return std::vector<double>(cloud.size(), minNoise);
+	const double degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
+	const double scatter  = 2.0 / (9.0 * degrees);
+	const auto   low      = cloud.size() < fewPoints ? tenth : quartile;
+	const double expected = std::pow(1.0 - scatter - low.below * std::sqrt(scatter), 3);
+	const Eigen::Matrix3Xd   centers = columnsOf(cloud.positions, blend.center);
+	const NeighborSearch     search(centers);
+	const std::vector<Index> places = order.sample(noisePlaces);
+	const Index count = std::max(noisePatches, static_cast<Index>(noiseShare * double(blend.center.size())));
+	std::vector<double> noise(places.size());
+	parallelFor(static_cast<Index>(places.size()), {}, [&](Index k) {
+		std::vector<double> variance;
+		for (const Index c : search.nearest(cloud.positions.col(places[k]), count))
+			variance.push_back(blend.variance[c]);
+		noise[k] = std::max(minNoise, std::sqrt(quantileInPlace(variance, low.share) / expected));
+	});
+	return spreadOver(cloud.positions, places, noise, noiseNeighbors, {});
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,28 @@
+// Crossings of noisy lines made consistent with each other, without geometry.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "line_crossing.h"
+#include "line_network.h"
+
+namespace curvature_lines {
+
+// Ids of the crossings along each line, as in LineIntersections::alongLine.
+std::vector<std::vector<Index>>
+sortAlongLines(const LineNetwork& lines, const std::vector<LineCrossing>& crossings);
+
+// Corrections at crossings that are closer along their lines than reach[line vertex], repeated
+// while they find something. None changes V - E + F of lines that lie in a surface.
+// - A line that crosses itself at once only wavers: that crossing goes.
+// - Two lines that cross and cross back at once bound an empty digon: both crossings go.
+// - Three lines that cross pairwise bound a triangle. Each line sees the opposite corner on one
+// side, by
+//   either of the two others; where just two lines see it on different sides, the third has its two
+//   crossings in the wrong order, and they are exchanged.
+// Returns the number of exchanges.
+Index makeConsistent(
+	const LineNetwork&         lines,
+	const std::vector<double>& reach,
+	std::vector<LineCrossing>& crossings);
+
+} // namespace curvature_lines

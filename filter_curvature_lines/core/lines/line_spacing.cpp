@@ -1,0 +1,212 @@
+// The distance between lines of curvature (A09 section 5.1) and the epsilon for a wanted number of crossings.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "line_spacing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <queue>
+
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cells apart
+constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
+constexpr double AutomaticMax = 0.1; // bounding-box diagonals
+constexpr double TargetRange  = 2.0; // with a target, up to so many times the mean distance and down to 1 / it
+constexpr double SmallestEpsilon = 1e-12, LargestEpsilon = 1.0; // diagonals
+constexpr double EpsilonTolerance = 3e-5; // of epsilon
+constexpr std::uintmax_t MostEvaluations = 40;
+// Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
+// slices' neighbours is 1.22 / sqrt(density).
+constexpr double ShareOfSpacing = 0.67;
+// Lines end up between d and 2 d apart: realised distance over d, measured.
+constexpr double RealisedDistance = 1.15;
+
+struct Bounds {
+	double least, most;
+};
+
+// d(kappa) jumps to its upper bound and back within a few spacings where the curvature across changes sign,
+// and no line would get through. Mesh sizing fields are graded for that reason: d grows by no more than
+// `gradation` times the distance.
+class GradedDistances {
+public:
+	GradedDistances(
+		const PointCloud&           cloud,
+		const CurvatureField&       field,
+		const MinimumNeighborhoods& minimum,
+		double                      gradation);
+
+	// Of family 0 along d1 and family 1 along d2.
+	std::vector<double> operator()(int family, double epsilon, const Bounds& bounds) const;
+
+private:
+	const NeighborLists&                  m_neighbors;
+	std::vector<double>                   m_growth; // to each of the neighbours
+	std::array<const Eigen::VectorXd*, 2> m_across; // curvature across the lines
+	std::array<std::vector<Index>, 2>     m_byBound; // the more bent the smaller is d(kappa), for any epsilon
+};
+
+GradedDistances::GradedDistances(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	double                      gradation) :
+		m_neighbors(minimum.neighbors), m_across {&field.k2, &field.k1}
+{
+	m_growth.reserve(m_neighbors.indices.size());
+	for (Index i = 0; i < cloud.size(); ++i)
+		for (const Index j : m_neighbors[i])
+			m_growth.push_back(gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm());
+	for (int family = 0; family < 2; ++family) {
+		const Eigen::VectorXd& across = *m_across[family];
+		std::vector<Index>&    order  = m_byBound[family];
+		order.resize(cloud.size());
+		std::iota(order.begin(), order.end(), 0);
+		std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+			return std::abs(across[a]) > std::abs(across[b]);
+		});
+	}
+}
+
+std::vector<double>
+GradedDistances::operator()(int family, double epsilon, const Bounds& bounds) const
+{
+	const Eigen::VectorXd&    across = *m_across[family];
+	const std::vector<Index>& order  = m_byBound[family];
+	std::vector<double>       d(order.size());
+	for (std::size_t i = 0; i < d.size(); ++i)
+		d[i] = lineSpacing(across[i], epsilon, bounds.least, bounds.most);
+
+	// Dijkstra from all points at once: in the order of d, those that were lowered among the others.
+	using Entry = std::pair<double, Index>;
+	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> lowered;
+	std::size_t next = 0;
+	while (next < d.size() || !lowered.empty()) {
+		Index i = 0;
+		if (next < d.size() && (lowered.empty() || d[order[next]] <= lowered.top().first)) {
+			i = order[next++];
+		}
+		else {
+			i                  = lowered.top().second;
+			const double value = lowered.top().first;
+			lowered.pop();
+			if (value > d[i])
+				continue;
+		}
+		for (Index k = m_neighbors.offsets[i]; k < m_neighbors.offsets[i + 1]; ++k) {
+			const Index  j     = m_neighbors.indices[k];
+			const double limit = d[i] + m_growth[k];
+			if (limit < d[j]) {
+				d[j] = limit;
+				lowered.emplace(limit, j);
+			}
+		}
+	}
+	return d;
+}
+
+double surfaceArea(const MinimumNeighborhoods& minimum)
+{
+	double sum = 0.0;
+	for (double h : minimum.spacing)
+		sum += ShareOfSpacing * h * h;
+	return sum;
+}
+
+// Two families at distances c d1 and c d2 cross once in every c d1 by c d2 of surface.
+double predictedCrossings(
+	const MinimumNeighborhoods& minimum, const std::array<std::vector<double>, 2>& d)
+{
+	double sum = 0.0;
+	for (std::size_t i = 0; i < d[0].size(); ++i) {
+		const double h = minimum.spacing[i];
+		sum += ShareOfSpacing * h * h / (RealisedDistance * RealisedDistance * d[0][i] * d[1][i]);
+	}
+	return sum;
+}
+
+// The epsilon, in diagonals, with which `predict` expects that many crossings: ever fewer as it grows. One of
+// the ends where there is none.
+template<class Predict>
+double epsilonFor(double crossings, const Predict& predict)
+{
+	const auto surplus = [&](double logarithm) { return std::log(predict(std::exp(logarithm)) / crossings); };
+	const double low = std::log(SmallestEpsilon), high = std::log(LargestEpsilon);
+	const double atLow = surplus(low), atHigh = surplus(high);
+	if (!(atLow > 0.0))
+		return SmallestEpsilon;
+	if (!(atHigh < 0.0))
+		return LargestEpsilon;
+	const auto     settled = [](double a, double b) { return std::abs(b - a) < EpsilonTolerance; };
+	std::uintmax_t evaluations = MostEvaluations;
+	const auto     bracket =
+		boost::math::tools::toms748_solve(surplus, low, high, atLow, atHigh, settled, evaluations);
+	return std::exp(0.5 * (bracket.first + bracket.second));
+}
+
+Bounds spacingBounds(
+	const MinimumNeighborhoods& minimum,
+	const LineSpacingOptions&   options,
+	double                      diagonal,
+	double                      crossings)
+{
+	const double median = minimum.medianSpacing;
+	Bounds       bounds = {AutomaticMin * median, AutomaticMax * diagonal};
+	if (crossings > 0.0) {
+		// On a cylinder or a plane epsilon alone cannot reach a target: one family stays at its bound.
+		const double mean = std::sqrt(surfaceArea(minimum) / crossings) / RealisedDistance;
+		bounds.least      = std::min(bounds.least, std::max(mean / TargetRange, median));
+		bounds.most       = TargetRange * mean;
+	}
+	if (options.minSpacing > 0.0)
+		bounds.least = options.minSpacing;
+	if (options.maxSpacing > 0.0)
+		bounds.most = options.maxSpacing;
+	bounds.least = std::max(bounds.least, SmallestMin * median);
+	bounds.most  = std::max(bounds.most, bounds.least);
+	return bounds;
+}
+
+} // namespace
+
+double lineSpacing(double k, double eps, double minSpacing, double maxSpacing)
+{
+	const double radius = 1.0 / std::max(std::abs(k), 1e-300);
+	const double e      = std::min(eps, radius);
+	return std::clamp(2.0 * std::sqrt(e * (2.0 * radius - e)), minSpacing, maxSpacing);
+}
+
+LineSpacing chooseLineSpacing(
+	const PointCloud&           cloud,
+	const CurvatureField&       field,
+	const MinimumNeighborhoods& minimum,
+	const LineSpacingOptions&   options,
+	double                      crossings)
+{
+	const Eigen::Vector3d extent =
+		cloud.positions.rowwise().maxCoeff() - cloud.positions.rowwise().minCoeff();
+	const double diagonal = extent.norm();
+	const Bounds bounds   = spacingBounds(minimum, options, diagonal, crossings);
+
+	const GradedDistances graded(cloud, field, minimum, options.gradation);
+	const auto at = [&](double epsilon) {
+		std::array<std::vector<double>, 2> distance;
+		parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon * diagonal, bounds); });
+		return distance;
+	};
+	const auto predict = [&](double epsilon) { return predictedCrossings(minimum, at(epsilon)); };
+
+	LineSpacing result;
+	result.diagonal = diagonal;
+	result.epsilon  = crossings > 0.0 ? epsilonFor(crossings, predict) : options.epsilon;
+	result.distance = at(result.epsilon);
+	return result;
+}
+
+} // namespace curvature_lines

@@ -1,0 +1,41 @@
+// The curvature-aligned quad mesh from a position field: scaffold, crosses, line density, phases,
+// arrangement, clean-up, and projection of the vertices onto the surface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "line_network.h"
+#include "position_field.h"
+#include "quad_mesh.h"
+#include "scaffold.h"
+
+namespace curvature_lines {
+
+struct PositionFieldMeshOptions {
+	double          targetVertices = 1600.0;
+	double          anisotropy = 1.5; // largest ratio of spacings that curvature asks for; 1: none
+	double          noise      = 0.0; // left in the cloud, a length
+	ScaffoldOptions scaffold;         // its target and noise are set from the above
+	PositionFieldOptions phases;
+	QuadMeshOptions      mesh;
+	bool                 keepLines = false; // as polylines, beside the mesh
+};
+
+struct PositionFieldMeshResult : QuadMeshResult {
+	Index scaffoldVertices = 0, scaffoldEuler = 0;
+	Index singularTriangles = 0, lineEnds = 0;
+	Index droppedComponents  = 0; // too small for a mesh, or without any line
+	Index repairedComponents = 0;
+	Index filledHoles = 0, lostCreaseEdges = 0;
+	LineNetwork lines; // if keepLines
+};
+
+// The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted around
+// them, if the field knows their heights; else the cloud is clean.
+PositionFieldMeshResult buildPositionFieldMesh(
+	const PointCloud&               cloud,
+	const CurvatureField&           curvature,
+	const std::vector<FeatureLine>& creases  = {},
+	const PositionFieldMeshOptions& options  = {},
+	const Progress&                 progress = {});
+
+} // namespace curvature_lines

@@ -1,0 +1,195 @@
+// Position field meshes of exact surfaces: topology, quads, alignment and the number of vertices.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "position_field_mesh.h"
+
+#include <map>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "estimated_field.h"
+#include "exact_field.h"
+#include "line_networks.h"
+#include "analytic_surfaces.h"
+
+namespace curvature_lines {
+namespace {
+
+samples::SampleRequest request(const std::string& surface, int points)
+{
+	samples::SampleRequest result;
+	result.surface = surface;
+	result.points  = points;
+	result.seed    = 4;
+	return result;
+}
+
+PositionFieldMeshResult meshOf(const test::ExactCloud& exact, double targetVertices)
+{
+	PositionFieldMeshOptions options;
+	options.targetVertices = targetVertices;
+	return buildPositionFieldMesh(exact.cloud, exact.field, {}, options);
+}
+
+// Mean angle of inner edges to the nearest principal direction, degrees.
+double meanAngle(const std::string& name, const PolygonMesh& mesh)
+{
+	const samples::AnalyticSurface&        surface = samples::surface(name);
+	std::map<std::pair<Index, Index>, int> sides;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		for (Index k = 0; k < mesh.faces[f].size(); ++k)
+			++sides[std::minmax(mesh.faces[f][k], mesh.faces[f][(k + 1) % mesh.faces[f].size()])];
+	double sum = 0.0, count = 0.0;
+	for (const auto& [side, faces] : sides) {
+		if (faces < 2)
+			continue;
+		const Eigen::Vector3d a = mesh.vertices.col(side.first), b = mesh.vertices.col(side.second);
+		const samples::SurfaceFrame frame = surface.frame(surface.project(0.5 * (a + b)));
+		const Eigen::Vector3d       d     = b - a;
+		const double                x = std::abs(d.dot(frame.d1)), y = std::abs(d.dot(frame.d2));
+		sum += std::atan2(std::min(x, y), std::max(x, y)) * 180.0 / EIGEN_PI;
+		count += 1.0;
+	}
+	return sum / count;
+}
+
+void expectManifold(const PositionFieldMeshResult& result, int euler, int rims)
+{
+	EXPECT_EQ(result.topology.eulerCharacteristic, euler);
+	EXPECT_EQ(result.topology.components, 1);
+	EXPECT_EQ(result.topology.boundaryLoops, rims);
+	EXPECT_EQ(result.topology.nonmanifoldEdges, 0);
+	EXPECT_EQ(result.topology.nonmanifoldVertices, 0);
+	EXPECT_TRUE(result.mesh.vertices.allFinite());
+}
+
+TEST(PositionFieldMesh, TorusIsAllQuadsAlongItsLinesOfCurvature)
+{
+	const PositionFieldMeshResult result = meshOf(test::exactCloud(request("torus", 6000)), 800);
+	expectManifold(result, 0, 0);
+	EXPECT_GE(result.topology.quads, 0.995 * result.topology.faces);
+	EXPECT_NEAR(result.topology.vertices, 800, 40);
+	EXPECT_LT(meanAngle("torus", result.mesh), 0.4);
+}
+
+TEST(PositionFieldMesh, EllipsoidHasEightConesAndFewOtherFaces)
+{
+	const PositionFieldMeshResult result =
+		meshOf(test::exactCloud(request("ellipsoid", 6000)), 800);
+	expectManifold(result, 2, 0);
+	EXPECT_GE(result.topology.quads, 0.96 * result.topology.faces);
+	EXPECT_NEAR(result.topology.vertices, 800, 40);
+	EXPECT_LT(meanAngle("ellipsoid", result.mesh), 2.5);
+}
+
+TEST(PositionFieldMesh, SphereIsCoveredByTheSmoothestField)
+{
+	const PositionFieldMeshResult result = meshOf(test::exactCloud(request("sphere", 6000)), 800);
+	expectManifold(result, 2, 0);
+	EXPECT_GE(result.topology.quads, 0.96 * result.topology.faces);
+	EXPECT_NEAR(result.topology.vertices, 800, 40);
+}
+
+// A few of very many points seem to have a direction by chance: they do not bend the field around them.
+TEST(PositionFieldMesh, DirectionsByChanceDoNotBendTheFieldOfASphere)
+{
+	test::ExactCloud exact = test::exactCloud(request("sphere", 6000));
+	for (Index i = 0; i < exact.cloud.size(); i += 1000) {
+		const double difference = 0.2 * std::abs(exact.field.k2[i]);
+		exact.field.k1[i]       = exact.field.k2[i] + difference;
+		exact.field.error[i]    = 0.1 * difference;
+	}
+	const PositionFieldMeshResult result = meshOf(exact, 800);
+	expectManifold(result, 2, 0);
+	EXPECT_GE(result.topology.quads, 0.96 * result.topology.faces);
+	EXPECT_LE(result.lineEnds, 10);
+}
+
+TEST(PositionFieldMesh, FewVerticesStillMakeATorus)
+{
+	const test::ExactCloud exact = test::exactCloud(request("torus", 2000));
+	for (const double target : {24.0, 60.0, 200.0})
+		expectManifold(meshOf(exact, target), 0, 0);
+}
+
+TEST(PositionFieldMesh, OpenSurfacesKeepOneLoopPerRim)
+{
+	expectManifold(meshOf(test::exactCloud(request("cylinder", 5000)), 600), 0, 2);
+	expectManifold(meshOf(test::exactCloud(request("helicoid", 5000)), 600), 1, 1);
+	expectManifold(meshOf(test::exactCloud(request("plane", 3000)), 300), 1, 1);
+}
+
+// Its umbilics are two cones each, around which the families change places: curves that run past them have to be cut.
+TEST(PositionFieldMesh, LinesOfAnEllipsoidKeepTheirFamily)
+{
+	const test::ExactCloud   exact = test::exactCloud(request("ellipsoid", 6000));
+	PositionFieldMeshOptions options;
+	options.targetVertices = 800;
+	options.keepLines      = true;
+	const LineNetwork               lines   = buildPositionFieldMesh(exact.cloud, exact.field, {}, options).lines;
+	const samples::AnalyticSurface& surface = samples::surface("ellipsoid");
+	const double                    largest = (exact.field.k1 - exact.field.k2).maxCoeff();
+	Index                           judged = 0, wrong = 0, closed = 0;
+	for (Index l = 0; l < lines.lines(); ++l) {
+		closed += lines.closed[l];
+		for (Index v = lines.offsets[l]; v + 1 < lines.offsets[l + 1]; ++v) {
+			const Eigen::Vector3d       a = lines.vertices.col(v), along = lines.vertices.col(v + 1) - a;
+			const samples::SurfaceFrame frame = surface.frame(surface.project(a + 0.5 * along));
+			if (frame.k1 - frame.k2 < 0.1 * largest)
+				continue;
+			const double first = std::abs(along.dot(frame.d1)), second = std::abs(along.dot(frame.d2));
+			++judged;
+			wrong += (lines.family[l] == 1) != (first > second);
+		}
+	}
+	EXPECT_GT(judged, 1000);
+	EXPECT_LT(wrong, 0.002 * judged); // 3 % when every curve was of one family
+	EXPECT_GT(closed, lines.lines() / 3);
+}
+
+// Half a spacing of noise: a scaffold over the points themselves is folded, and lines on it turned back and crossed.
+TEST(PositionFieldMesh, LinesOfANoisyCloudDoNotCross)
+{
+	for (const char* surface : {"ellipsoid", "helicoid", "cube"}) {
+		samples::SampleRequest noisy      = request(surface, 5000);
+		noisy.noise                       = 0.006;
+		const samples::SampleCloud sample = samples::generate(noisy);
+		test::EstimatedField       estimated =
+			test::estimateAdaptiveField(sample.positions, sample.normals);
+		PointCloud& cloud = estimated.prepared.cloud;
+		cloud.normals     = estimated.field.correctedNormals;
+		makeTangent(cloud.normals, estimated.field);
+		PositionFieldMeshOptions options;
+		options.targetVertices = 800;
+		options.keepLines      = true;
+		const PositionFieldMeshResult result = buildPositionFieldMesh(cloud, estimated.field, {}, options);
+		EXPECT_GT(result.lines.lines(), 40) << surface;
+		EXPECT_EQ(tests::crossingsWithinFamilies(result.lines), 0) << surface;
+		EXPECT_GT(result.scaffoldVertices, 1200) << surface; // about 740, thinned again and again, when it was folded
+	}
+}
+
+TEST(PositionFieldMesh, IsTheSameForAnyNumberOfThreads)
+{
+	const test::ExactCloud exact   = test::exactCloud(request("ellipsoid", 2500));
+	const int              threads = omp_get_max_threads();
+	omp_set_num_threads(1);
+	const PositionFieldMeshResult one = meshOf(exact, 300);
+	omp_set_num_threads(3);
+	const PositionFieldMeshResult three = meshOf(exact, 300);
+	omp_set_num_threads(threads);
+	EXPECT_EQ(one.mesh.vertices, three.mesh.vertices);
+	EXPECT_EQ(one.mesh.faces.indices, three.mesh.faces.indices);
+}
+
+TEST(PositionFieldMesh, TooFewPointsGiveAnEmptyMesh)
+{
+	PointCloud few;
+	few.positions = Eigen::Matrix3Xd::Identity(3, 3);
+	few.normals   = few.positions;
+	CurvatureField field;
+	EXPECT_EQ(buildPositionFieldMesh(few, field).mesh.faceCount(), 0);
+}
+
+} // namespace
+} // namespace curvature_lines

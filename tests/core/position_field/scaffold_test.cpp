@@ -1,0 +1,224 @@
+// The scaffold on exact surfaces, clean and dirty: manifold with the topology of the surface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "crease_recovery.h"
+#include "scaffold.h"
+#include "analytic_surfaces.h"
+
+namespace curvature_lines {
+namespace {
+
+samples::SampleRequest request(const std::string& surface, int points, double noise = 0.0)
+{
+	samples::SampleRequest result;
+	result.surface = surface;
+	result.points  = points;
+	result.noise   = noise;
+	result.seed    = 3;
+	return result;
+}
+
+PointCloud cloudOf(const samples::SampleRequest& request)
+{
+	const samples::SampleCloud sample = samples::generate(request);
+	return {sample.positions, sample.normals};
+}
+
+struct Expected {
+	const char* surface;
+	int         points, euler, rims;
+};
+
+TEST(Scaffold, HasTheTopologyOfTheSurface)
+{
+	for (const Expected& e :
+		 {Expected{"torus", 4000, 0, 0},
+		  Expected{"sphere", 4000, 2, 0},
+		  Expected{"ellipsoid", 4000, 2, 0},
+		  Expected{"cylinder", 4000, 0, 2},
+		  Expected{"helicoid", 4000, 1, 1},
+		  Expected{"plane", 2000, 1, 1},
+		  Expected{"torus", 1600, 0, 0},
+		  Expected{"cube", 600, 2, 0}}) {
+		const Scaffold scaffold = buildScaffold(cloudOf(request(e.surface, e.points)));
+		EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), e.euler) << e.surface;
+		EXPECT_EQ(static_cast<int>(scaffold.mesh.rims().size()), e.rims) << e.surface;
+		EXPECT_EQ(scaffold.components, 1) << e.surface;
+	}
+}
+
+TEST(Scaffold, TrianglesLookOutward)
+{
+	const PointCloud cloud    = cloudOf(request("torus", 2000));
+	const Scaffold   scaffold = buildScaffold(cloud);
+	for (Index t = 0; t < scaffold.mesh.triangleCount(); ++t)
+		EXPECT_GT(
+			scaffold.mesh.areaVector(t).dot(
+				cloud.normals.col(scaffold.source[scaffold.mesh.triangles()[t][0]])),
+			0.0);
+}
+
+TEST(Scaffold, IsAsCoarseAsItsQuadMeshAllows)
+{
+	const PointCloud cloud = cloudOf(request("sphere", 8000));
+	ScaffoldOptions  options;
+	options.targetVertices  = 200;
+	const Scaffold scaffold = buildScaffold(cloud, {}, options);
+	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
+	EXPECT_LT(scaffold.mesh.vertexCount(), 8 * 200);
+	EXPECT_NEAR(scaffold.cell, std::sqrt(4 * EIGEN_PI / 200), 0.1 * scaffold.cell);
+}
+
+TEST(Scaffold, DoesNotDependOnTheOrderOfThePoints)
+{
+	const PointCloud   cloud = cloudOf(request("ellipsoid", 1500));
+	std::vector<Index> order(cloud.size());
+	std::iota(order.begin(), order.end(), 0);
+	std::rotate(order.begin(), order.begin() + 700, order.end());
+	PointCloud rotated = cloud;
+	for (Index k = 0; k < cloud.size(); ++k) {
+		rotated.positions.col(k) = cloud.positions.col(order[k]);
+		rotated.normals.col(k)   = cloud.normals.col(order[k]);
+	}
+	const Scaffold a = buildScaffold(cloud), b = buildScaffold(rotated);
+	EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
+	EXPECT_EQ(a.mesh.triangles(), b.mesh.triangles());
+}
+
+std::vector<FeatureLine> cubeEdges()
+{
+	std::vector<FeatureLine> edges;
+	for (int axis = 0; axis < 3; ++axis) {
+		for (const double a : {-0.5, 0.5}) {
+			for (const double b : {-0.5, 0.5}) {
+				Eigen::Matrix3Xd line(3, 2);
+				line.row(axis) << -0.5, 0.5;
+				line.row((axis + 1) % 3).setConstant(a);
+				line.row((axis + 2) % 3).setConstant(b);
+				edges.push_back({line, false});
+			}
+		}
+	}
+	return edges;
+}
+
+TEST(Scaffold, HoldsTheCreasesAsEdges)
+{
+	const Scaffold scaffold = buildScaffold(cloudOf(request("cube", 6000)), cubeEdges());
+	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
+	EXPECT_EQ(scaffold.lostCreaseEdges, 0);
+	double length = 0.0;
+	for (Index e = 0; e < scaffold.mesh.edgeCount(); ++e)
+		length += scaffold.creaseEdge[e] ? scaffold.mesh.along(e).norm() : 0.0;
+	EXPECT_NEAR(length, 12.0, 1e-9);
+}
+
+// A square of 2 x 2 cells about a crease that no triangle has: one of its points is missing, the other two are
+// joined across it.
+// As wrinkles give: short lines that hover over the surface.
+TEST(Scaffold, LeavesOutCreasesThatWouldTearIt)
+{
+	const PointCloud         cloud = cloudOf(request("sphere", 4000));
+	samples::Random          random(7, 0);
+	std::vector<FeatureLine> creases;
+	for (int k = 0; k < 150; ++k) {
+		const Eigen::Vector3d from = random.normal3().normalized();
+		const Eigen::Vector3d to   = (from + 0.15 * random.normal3()).normalized();
+		FeatureLine           crease;
+		crease.points.resize(3, 2);
+		crease.points << (1.0 + 0.12 * random.normal()) * from, (1.0 + 0.12 * random.normal()) * to;
+		creases.push_back(crease);
+	}
+	const Scaffold scaffold = buildScaffold(cloud, creases);
+	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
+	EXPECT_TRUE(scaffold.mesh.rims().empty());
+	EXPECT_EQ(scaffold.components, 1);
+}
+
+TEST(CreaseRecovery, PutsMissingPointsInAndFlipsWhatCrosses)
+{
+	Eigen::Matrix3Xd points(3, 9);
+	for (Index k = 0; k < 9; ++k)
+		points.col(k) << k % 3, k / 3, k % 3 == 1 ? 0.3 : 0.0;
+	// Crease 1, 4, 7; vertex 4 is unused: the triangles run from 3 to 5 and to the corners.
+	std::vector<Triangle> triangles = {{0, 1, 3}, {1, 5, 3}, {1, 2, 5}, {3, 5, 7}, {3, 7, 6}, {5, 8, 7}};
+	recoverCreaseEdges(points, {{1, 4}, {4, 7}}, triangles);
+	std::vector<Index>          copies;
+	const std::vector<Triangle> kept = manifoldPart(triangles, 9, copies);
+	EXPECT_EQ(kept.size(), 8u);
+	EXPECT_TRUE(copies.empty());
+	const TriangleMesh mesh(points, kept);
+	EXPECT_GE(mesh.edgeBetween(1, 4), 0);
+	EXPECT_GE(mesh.edgeBetween(4, 7), 0);
+	EXPECT_EQ(mesh.eulerCharacteristic(), 1);
+	EXPECT_EQ(mesh.rims().size(), 1u);
+	for (Index t = 0; t < mesh.triangleCount(); ++t)
+		EXPECT_GT(mesh.areaVector(t).z(), 0.0);
+}
+
+// Two edges cross the missing one.
+TEST(CreaseRecovery, FlipsSeveralEdges)
+{
+	Eigen::Matrix3Xd points(3, 6);
+	points << 0, 1, 1, 2, 2, 3, //
+		0, -1, 1, -1, 1, 0,     //
+		0, 0, 0, 0, 0, 0;
+	std::vector<Triangle> triangles = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}};
+	recoverCreaseEdges(points, {{0, 5}}, triangles);
+	const TriangleMesh mesh(points, triangles);
+	EXPECT_GE(mesh.edgeBetween(0, 5), 0);
+	EXPECT_EQ(mesh.eulerCharacteristic(), 1);
+	for (Index t = 0; t < mesh.triangleCount(); ++t)
+		EXPECT_GT(mesh.areaVector(t).z(), 0.0);
+}
+
+TEST(Scaffold, KeepsLargeComponentsAndCountsSpecks)
+{
+	const PointCloud torus  = cloudOf(request("torus", 3000)),
+					 sphere = cloudOf(request("sphere", 3000));
+	PointCloud  both;
+	const Index specks = 6, n = torus.size() + sphere.size() + specks;
+	both.positions.resize(3, n);
+	both.normals.resize(3, n);
+	both.positions << torus.positions, sphere.positions.colwise() + Eigen::Vector3d(5, 0, 0),
+		Eigen::Matrix3Xd::Zero(3, specks);
+	both.normals << torus.normals, sphere.normals, Eigen::Vector3d::UnitZ().replicate(1, specks);
+	for (Index k = 0; k < specks; ++k)
+		both.positions.col(n - specks + k) =
+			Eigen::Vector3d(0.1 * (k % 3), 0.1 * (k / 3), 3.0 + 0.001 * k);
+	const Scaffold scaffold = buildScaffold(both);
+	EXPECT_EQ(scaffold.components, 2);
+	EXPECT_EQ(scaffold.droppedComponents, 1);
+	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
+}
+
+TEST(Scaffold, BadInputMakesNoTriangle)
+{
+	EXPECT_EQ(buildScaffold({}).mesh.triangleCount(), 0);
+	PointCloud few;
+	few.positions = Eigen::Matrix3Xd::Identity(3, 3);
+	few.normals   = few.positions;
+	EXPECT_EQ(buildScaffold(few).mesh.triangleCount(), 0);
+}
+
+TEST(ManifoldPart, RefusesThirdTrianglesAndSplitsVertices)
+{
+	std::vector<Index>          copies;
+	const std::vector<Triangle> book = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+	EXPECT_EQ(manifoldPart(book, 5, copies).size(), 2u);
+	EXPECT_TRUE(copies.empty());
+
+	const std::vector<Triangle> bowTie = {{0, 1, 2}, {0, 3, 4}};
+	const auto                  split  = manifoldPart(bowTie, 5, copies);
+	ASSERT_EQ(copies, std::vector<Index>{0});
+	EXPECT_EQ(split[1][0], 5);
+	EXPECT_EQ(TriangleMesh(Eigen::Matrix3Xd::Random(3, 6), split).rims().size(), 2u);
+}
+
+} // namespace
+} // namespace curvature_lines

@@ -49,8 +49,8 @@ int project(const char* file, const char* output)
 	const NeighborSearch            search(prepared.cloud.positions);
 	const MinimumNeighborhoods      minimum = minimumNeighborhoods(prepared.cloud, search);
 	const MovingLeastSquaresSurface surface({prepared.cloud, search, minimum.spacing});
-	const Eigen::Matrix3Xd          moved = projectPoints(surface, prepared.cloud.positions).positions;
-	std::vector<double>             coordinates;
+	const Eigen::Matrix3Xd moved = projectPoints(surface, prepared.cloud.positions).positions;
+	std::vector<double>    coordinates;
 	for (Eigen::Index i = 0; i < moved.cols(); ++i)
 		for (const double x : prepared.toModel(moved.col(i)))
 			coordinates.push_back(x);
@@ -71,9 +71,9 @@ int compare(const char* file, int width, int height, int runs)
 	options.height      = height;
 	const Camera camera = Camera::facing(prepared.cloud, double(width) / height);
 
-	const PointSetSurface*    surfaces[2] = {&driven, &squares};
-	std::vector<double>       seconds[2];
-	std::vector<RayHit>       hits[2];
+	const PointSetSurface* surfaces[2] = {&driven, &squares};
+	std::vector<double>    seconds[2];
+	std::vector<RayHit>    hits[2];
 	for (int run = 0; run < 2 * runs; ++run) {
 		// 0 1 1 0 0 1 ...: each comes first and second alike.
 		const int       which = (run + 1) / 2 % 2;
@@ -99,7 +99,8 @@ int compare(const char* file, int width, int height, int runs)
 	printList("driven", seconds[0]);
 	printList("squares", seconds[1]);
 	std::printf(
-		"\"driven_hits\": %zu, \"squares_hits\": %zu, \"agreement\": %.8f, \"depth_difference\": %.8f}\n",
+		"\"driven_hits\": %zu, \"squares_hits\": %zu, \"agreement\": %.8f, \"depth_difference\": "
+		"%.8f}\n",
 		seen[0],
 		seen[1],
 		double(agree) / double(hits[0].size()),
@@ -131,7 +132,10 @@ int main(int count, char** words)
 			return project(words[2], words[3]);
 		if (what == "peak" && count == 4)
 			return printPeak(std::atof(words[2]), Index(std::atoi(words[3])));
-		std::fprintf(stderr, "usage: point_set_surfaces compare CLOUD WIDTH HEIGHT RUNS | project CLOUD OUTPUT | peak H EXPONENT\n");
+		std::fprintf(
+			stderr,
+			"usage: point_set_surfaces compare CLOUD WIDTH HEIGHT RUNS | project CLOUD OUTPUT | "
+			"peak H EXPONENT\n");
 		return 2;
 	}
 	catch (const std::exception& error) {

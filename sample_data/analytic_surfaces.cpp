@@ -66,7 +66,7 @@ const AnalyticSurface& surface(const std::string& name)
 GroundTruth groundTruth(const AnalyticSurface& surface, const Eigen::Matrix3Xd& points)
 {
 	const Eigen::Index n = points.cols();
-	GroundTruth truth;
+	GroundTruth        truth;
 	for (Eigen::Matrix3Xd* m : {&truth.footPoints, &truth.normals, &truth.d1, &truth.d2})
 		m->resize(3, n);
 	truth.k1.resize(n);

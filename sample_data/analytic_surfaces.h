@@ -20,10 +20,10 @@ class Random {
 public:
 	// Streams of one seed are independent: outliers do not change the inliers.
 	Random(std::uint64_t seed, std::uint64_t stream);
-	double          uniform(double from = 0.0, double to = 1.0); // [from, to)
-	double          normal();                                    // mean 0, standard deviation 1
+	double uniform(double from = 0.0, double to = 1.0); // [from, to)
+	double normal();                                    // mean 0, standard deviation 1
 	Eigen::Vector3d normal3();
-	std::size_t     index(std::size_t count); // [0, count)
+	std::size_t index(std::size_t count); // [0, count)
 
 private:
 	std::mt19937_64 m_engine;
@@ -40,19 +40,22 @@ class AnalyticSurface {
 public:
 	virtual ~AnalyticSurface() = default;
 
-	virtual Eigen::AlignedBox3d boundingBox() const                         = 0;
-	virtual int                 eulerCharacteristic() const                 = 0;
-	virtual bool                closed() const                              = 0;
-	virtual Eigen::Vector3d     project(const Eigen::Vector3d& point) const = 0; // closest surface point
-	virtual SurfaceFrame        frame(const Eigen::Vector3d& foot) const    = 0; // foot on the surface
+	virtual Eigen::AlignedBox3d boundingBox() const = 0;
+	virtual int eulerCharacteristic() const         = 0;
+	virtual bool closed() const                     = 0;
+	// closest surface point
+	virtual Eigen::Vector3d project(const Eigen::Vector3d& point) const = 0;
+	// foot on the surface
+	virtual SurfaceFrame frame(const Eigen::Vector3d& foot) const = 0;
 
 	// Distances within the surface, infinite where there is no such thing: to the rim of an open surface,
 	// and to the nearest sharp edge or jump of curvature. Truth is compared with estimates away from both.
 	virtual double rimDistance(const Eigen::Vector3d& foot) const;
 	virtual double featureDistance(const Eigen::Vector3d& foot) const;
 
-	virtual Eigen::Vector3d  sample(Random& random) const = 0; // uniform by area
-	virtual Eigen::Matrix3Xd grid(int points) const       = 0; // evenly spaced, about so many points
+	virtual Eigen::Vector3d sample(Random& random) const = 0; // uniform by area
+	// evenly spaced, about so many points
+	virtual Eigen::Matrix3Xd grid(int points) const = 0;
 
 	double diagonal() const { return boundingBox().diagonal().norm(); }
 };
@@ -82,13 +85,16 @@ struct GroundTruth {
 GroundTruth groundTruth(const AnalyticSurface& surface, const Eigen::Matrix3Xd& points);
 
 struct SampleRequest {
-	std::string   surface      = "torus";
-	int           points       = 2000;  // inliers; outliers come on top
-	double        noise        = 0.0;   // standard deviation per coordinate, fraction of the surface's diagonal
-	double        farOutliers  = 0.0;   // share of the cloud; uniform in 1.2 times the bounding box
-	double        nearOutliers = 0.0;   // share; clusters of 12 points, 3 to 8 noise units off the surface
+	std::string surface = "torus";
+	int         points  = 2000; // inliers; outliers come on top
+	// standard deviation per coordinate, fraction of the surface's diagonal
+	double noise       = 0.0;
+	double farOutliers = 0.0; // share of the cloud; uniform in 1.2 times the bounding box
+	// share; clusters of 12 points, 3 to 8 noise units off the surface
+	double        nearOutliers = 0.0;
 	std::uint64_t seed         = 0;
-	bool          regular      = false; // AnalyticSurface::grid instead of area-uniform random points
+	// AnalyticSurface::grid instead of area-uniform random points
+	bool regular = false;
 };
 
 enum PointLabel : int { Inlier = 0, FarOutlier = 1, NearOutlier = 2 };

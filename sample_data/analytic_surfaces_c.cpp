@@ -13,11 +13,11 @@ namespace {
 
 // Memory of the caller, one row per point.
 struct TruthBuffers {
-	double *footPoints, *normals, *d1, *d2; // N x 3
+	double *footPoints, *normals, *d1, *d2;          // N x 3
 	double *k1, *k2, *rimDistance, *featureDistance; // N
 };
 
-template <typename Matrix, typename Scalar>
+template<typename Matrix, typename Scalar>
 void copyTo(const Matrix& from, Scalar* to)
 {
 	std::copy(from.data(), from.data() + from.size(), to);
@@ -48,14 +48,14 @@ const AnalyticSurface* find(const char* name)
 // The name at a position of the list, null beyond its end.
 SAMPLE_DATA_EXPORT const char* samples_surface_name(int position)
 {
-	const auto& names = surfaceNames();
+	const auto& names  = surfaceNames();
 	const bool  inside = position >= 0 && position < static_cast<int>(names.size());
 	return inside ? names[position].c_str() : nullptr;
 }
 
 // corners: lower and upper corner of the bounding box, 6 numbers. False for an unknown name.
-SAMPLE_DATA_EXPORT bool
-samples_surface_properties(const char* name, double* corners, bool* closed, int* eulerCharacteristic)
+SAMPLE_DATA_EXPORT bool samples_surface_properties(
+	const char* name, double* corners, bool* closed, int* eulerCharacteristic)
 {
 	const AnalyticSurface* shape = find(name);
 	if (!shape)
@@ -67,8 +67,8 @@ samples_surface_properties(const char* name, double* corners, bool* closed, int*
 	return true;
 }
 
-SAMPLE_DATA_EXPORT bool samples_project(
-	const char* name, int count, const double* points, const TruthBuffers* truth)
+SAMPLE_DATA_EXPORT bool
+samples_project(const char* name, int count, const double* points, const TruthBuffers* truth)
 {
 	const AnalyticSurface* shape = find(name);
 	if (!shape)
@@ -103,7 +103,11 @@ SAMPLE_DATA_EXPORT int samples_size(const SampleCloud* cloud)
 }
 
 SAMPLE_DATA_EXPORT void samples_copy(
-	const SampleCloud* cloud, const char* name, double* positions, int* label, const TruthBuffers* truth)
+	const SampleCloud*  cloud,
+	const char*         name,
+	double*             positions,
+	int*                label,
+	const TruthBuffers* truth)
 {
 	copyTo(cloud->positions, positions);
 	copyTo(cloud->label, label);

@@ -13,8 +13,8 @@ using namespace detail;
 class Torus final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround({R + r, R + r, r}); }
-	int          eulerCharacteristic() const override { return 0; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return 0; }
+	bool closed() const override { return true; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -68,8 +68,8 @@ public:
 	Capsule(double radius, double height) : R(radius), m_half(height / 2.0) {}
 
 	AlignedBox3d boundingBox() const override { return boxAround({R, R, R + m_half}); }
-	int          eulerCharacteristic() const override { return 2; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return 2; }
+	bool closed() const override { return true; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -130,8 +130,8 @@ private:
 class Cube final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround({half, half, half}); }
-	int          eulerCharacteristic() const override { return 2; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return 2; }
+	bool closed() const override { return true; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -147,7 +147,10 @@ public:
 	{
 		const int axis = faceAxis(q);
 		return frameOf(
-			std::copysign(1.0, q[axis]) * Vector3d::Unit(axis), Vector3d::Unit((axis + 1) % 3), 0.0, 0.0);
+			std::copysign(1.0, q[axis]) * Vector3d::Unit(axis),
+			Vector3d::Unit((axis + 1) % 3),
+			0.0,
+			0.0);
 	}
 
 	double featureDistance(const Vector3d& q) const override
@@ -161,7 +164,7 @@ public:
 	Vector3d sample(Random& random) const override
 	{
 		const std::size_t face = random.index(6);
-		const double s = random.uniform(-half, half), t = random.uniform(-half, half);
+		const double      s = random.uniform(-half, half), t = random.uniform(-half, half);
 		return at(face, s, t);
 	}
 
@@ -198,19 +201,19 @@ private:
 class Ellipsoid final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround(axes()); }
-	int          eulerCharacteristic() const override { return 2; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return 2; }
+	bool closed() const override { return true; }
 
 	// The foot point is a^2 p / (a^2 + t) for the largest root t of sum (a p / (a^2 + t))^2 = 1.
 	Vector3d project(const Vector3d& p) const override
 	{
 		const Vector3d a = axes(), a2 = a.cwiseAbs2(), ap = a.cwiseProduct(p);
-		double from = -a2.z(), to = ap.norm();
+		double         from = -a2.z(), to = ap.norm();
 		while (true) {
 			const double t = 0.5 * (from + to);
 			if (t <= from || t >= to)
 				break;
-			const Vector3d x = ap.cwiseQuotient(a2 + Vector3d::Constant(t));
+			const Vector3d x                    = ap.cwiseQuotient(a2 + Vector3d::Constant(t));
 			(x.squaredNorm() > 1.0 ? from : to) = t;
 		}
 		Vector3d x = ap.cwiseQuotient(a2 + Vector3d::Constant(to)); // on the unit sphere

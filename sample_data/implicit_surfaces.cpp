@@ -15,8 +15,8 @@ class DoubleTorus final : public AnalyticSurface {
 public:
 	// The blend is too thin to reach beyond the tori at the ends of the box.
 	AlignedBox3d boundingBox() const override { return boxAround({offset + R + r, R + r, r}); }
-	int          eulerCharacteristic() const override { return -2; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return -2; }
+	bool closed() const override { return true; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -67,7 +67,8 @@ public:
 		Eigen::VectorXd gap  = Eigen::VectorXd::Constant(from.cols(), infinity);
 		for (int k = 0; k < points; ++k) {
 			chosen.col(k) = from.col(next);
-			gap = gap.cwiseMin((from.colwise() - chosen.col(k)).colwise().squaredNorm().transpose());
+			gap =
+				gap.cwiseMin((from.colwise() - chosen.col(k)).colwise().squaredNorm().transpose());
 			gap.maxCoeff(&next);
 		}
 		return chosen;
@@ -76,7 +77,8 @@ public:
 private:
 	static constexpr double R = 0.7, r = 0.3, offset = 0.85; // of the centres from the middle
 	static constexpr double k = 12.0;                        // sharpness of the blend
-	static constexpr std::size_t mostCrossings = 8;          // of a line; each torus is met four times at most
+	// of a line; each torus is met four times at most
+	static constexpr std::size_t mostCrossings = 8;
 
 	struct Level {
 		double          value;
@@ -139,7 +141,7 @@ private:
 	{
 		double best = std::abs(value(p));
 		for (int step = 0; step < 60 && best > 0.0; ++step) {
-			const Level at = level(p);
+			const Level at   = level(p);
 			Vector3d    move = -at.value / (at.gradient.squaredNorm() + 1e-300) * at.gradient;
 			if (move.norm() > 0.5 * r)
 				move *= 0.5 * r / move.norm();
@@ -155,14 +157,15 @@ private:
 	// From a point q of the surface down to one whose distance from p no step in the surface makes less.
 	static Vector3d descend(const Vector3d& p, Vector3d q)
 	{
-		constexpr double least = 0.1; // second derivative along a direction that would lead to a farthest point
+		// second derivative along a direction that would lead to a farthest point
+		constexpr double least = 0.1;
 		for (int step = 0; step < 100; ++step) {
-			const Level        at = level(q);
-			const SurfaceFrame f  = levelSetFrame(at.gradient, at.hessian);
-			const Vector3d     d  = p - q;
-			const double       h  = d.dot(f.normal);
-			Vector3d move = d.dot(f.d1) / std::max(1.0 + h * f.k1, least) * f.d1 +
-							d.dot(f.d2) / std::max(1.0 + h * f.k2, least) * f.d2;
+			const Level        at   = level(q);
+			const SurfaceFrame f    = levelSetFrame(at.gradient, at.hessian);
+			const Vector3d     d    = p - q;
+			const double       h    = d.dot(f.normal);
+			Vector3d           move = d.dot(f.d1) / std::max(1.0 + h * f.k1, least) * f.d1 +
+			                d.dot(f.d2) / std::max(1.0 + h * f.k2, least) * f.d2;
 			if (move.norm() > r)
 				move *= r / move.norm();
 			Vector3d next = onSurface(q + move);

@@ -13,8 +13,8 @@ using namespace detail;
 class Cylinder final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround({R, R, half}); }
-	int          eulerCharacteristic() const override { return 0; }
-	bool         closed() const override { return false; }
+	int eulerCharacteristic() const override { return 0; }
+	bool closed() const override { return false; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -51,8 +51,8 @@ private:
 class Helicoid final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround({U, U, c * V}); }
-	int          eulerCharacteristic() const override { return 1; }
-	bool         closed() const override { return false; }
+	int eulerCharacteristic() const override { return 1; }
+	bool closed() const override { return false; }
 
 	// For given v the best u is known, which leaves a search in v alone: its local minima are bracketed on
 	// a grid much finer than they can lie, then found by bisection of the derivative (u drops out of it at
@@ -144,7 +144,7 @@ private:
 	double minimumBetween(const Vector3d& p, double from, double to) const
 	{
 		for (int i = 0; i < 60; ++i) {
-			const double middle = 0.5 * (from + to);
+			const double middle                    = 0.5 * (from + to);
 			(slopeAt(p, middle) < 0.0 ? from : to) = middle;
 		}
 		return 0.5 * (from + to);
@@ -160,7 +160,7 @@ public:
 		AlignedBox3d box(at(from, -half));
 		return box.extend(at(from, half)).extend(at(to, half));
 	}
-	int  eulerCharacteristic() const override { return 1; }
+	int eulerCharacteristic() const override { return 1; }
 	bool closed() const override { return false; }
 
 	Vector3d project(const Vector3d& p) const override
@@ -190,10 +190,7 @@ public:
 		return std::min({s - from, to - s, half - std::abs(q.y())});
 	}
 
-	double featureDistance(const Vector3d& q) const override
-	{
-		return std::abs(arcLength(q));
-	}
+	double featureDistance(const Vector3d& q) const override { return std::abs(arcLength(q)); }
 
 	Vector3d sample(Random& random) const override
 	{
@@ -227,8 +224,8 @@ private:
 class Plane final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround({half, half, 0.0}); }
-	int          eulerCharacteristic() const override { return 1; }
-	bool         closed() const override { return false; }
+	int eulerCharacteristic() const override { return 1; }
+	bool closed() const override { return false; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -265,9 +262,12 @@ private:
 // Half a torus, y >= 0: a bent pipe that ends in two meridians.
 class HalfTorus final : public AnalyticSurface {
 public:
-	AlignedBox3d boundingBox() const override { return {Vector3d(-R - r, 0.0, -r), Vector3d(R + r, R + r, r)}; }
-	int          eulerCharacteristic() const override { return 0; }
-	bool         closed() const override { return false; }
+	AlignedBox3d boundingBox() const override
+	{
+		return {Vector3d(-R - r, 0.0, -r), Vector3d(R + r, R + r, r)};
+	}
+	int eulerCharacteristic() const override { return 0; }
+	bool closed() const override { return false; }
 
 	Vector3d project(const Vector3d& p) const override
 	{

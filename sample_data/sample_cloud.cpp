@@ -15,12 +15,14 @@ using Eigen::Vector3d;
 enum Stream : std::uint64_t { PointStream, NoiseStream, FarStream, NearStream, OrderStream };
 
 // The numbers of the papers' experiments, as our reference measurements read them.
-constexpr double farBoxScale       = 1.2;
-constexpr int    clusterSize       = 12;
-constexpr double clusterOffset[2]  = {3.0, 8.0}; // noise units
-constexpr double clusterSpread     = 0.7;        // noise units
-constexpr double smallestNoiseUnit = 0.0025;     // of the diagonal, so that clean clouds have outliers too
-constexpr double thinnestBox       = 0.2;        // of the diagonal: outliers of a plane must leave it
+constexpr double farBoxScale      = 1.2;
+constexpr int    clusterSize      = 12;
+constexpr double clusterOffset[2] = {3.0, 8.0}; // noise units
+constexpr double clusterSpread    = 0.7;        // noise units
+// of the diagonal, so that clean clouds have outliers too
+constexpr double smallestNoiseUnit = 0.0025;
+// of the diagonal: outliers of a plane must leave it
+constexpr double thinnestBox = 0.2;
 
 // splitmix64 (Steele et al. 2014), to spread neighbouring seeds over the whole range.
 std::uint64_t spread(std::uint64_t x)
@@ -67,10 +69,10 @@ Matrix3Xd nearOutliers(const AnalyticSurface& surface, int count, double noise, 
 	Vector3d     center = Vector3d::Zero();
 	for (int i = 0; i < count; ++i) {
 		if (i % clusterSize == 0) {
-			const Vector3d foot = surface.sample(random);
-			const double   side = random.index(2) == 0 ? 1.0 : -1.0;
+			const Vector3d foot   = surface.sample(random);
+			const double   side   = random.index(2) == 0 ? 1.0 : -1.0;
 			const double   offset = unit * random.uniform(clusterOffset[0], clusterOffset[1]);
-			center = foot + side * offset * surface.frame(foot).normal;
+			center                = foot + side * offset * surface.frame(foot).normal;
 		}
 		points.col(i) = center + clusterSpread * unit * random.normal3();
 	}
@@ -88,7 +90,9 @@ std::vector<Eigen::Index> shuffledOrder(Eigen::Index count, Random random)
 
 } // namespace
 
-Random::Random(std::uint64_t seed, std::uint64_t stream) : m_engine(spread(spread(seed) + stream)) {}
+Random::Random(std::uint64_t seed, std::uint64_t stream) : m_engine(spread(spread(seed) + stream))
+{
+}
 
 double Random::uniform(double from, double to)
 {
@@ -134,8 +138,8 @@ SampleCloud generate(const SampleRequest& request)
 			inliers.col(i) += request.noise * shape.diagonal() * random.normal3();
 	}
 
-	const int farCount  = outlierCount(request.farOutliers, inliers.cols());
-	const int nearCount = outlierCount(request.nearOutliers, inliers.cols());
+	const int       farCount  = outlierCount(request.farOutliers, inliers.cols());
+	const int       nearCount = outlierCount(request.nearOutliers, inliers.cols());
 	Matrix3Xd       all(3, inliers.cols() + farCount + nearCount);
 	Eigen::VectorXi label(all.cols());
 	all << inliers, farOutliers(shape, farCount, Random(request.seed, FarStream)),

@@ -12,8 +12,8 @@ using namespace detail;
 class CappedCylinder final : public AnalyticSurface {
 public:
 	AlignedBox3d boundingBox() const override { return boxAround({R, R, half}); }
-	int          eulerCharacteristic() const override { return 2; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return 2; }
+	bool closed() const override { return true; }
 
 	Vector3d project(const Vector3d& p) const override
 	{
@@ -27,7 +27,8 @@ public:
 	SurfaceFrame frame(const Vector3d& q) const override
 	{
 		if (onCap(q))
-			return frameOf(std::copysign(1.0, q.z()) * Vector3d::UnitZ(), Vector3d::UnitX(), 0.0, 0.0);
+			return frameOf(
+				std::copysign(1.0, q.z()) * Vector3d::UnitZ(), Vector3d::UnitX(), 0.0, 0.0);
 		const Vector2d e = radialDirection(q);
 		return frameOf({e.x(), e.y(), 0.0}, {-e.y(), e.x(), 0.0}, 1.0 / R, 0.0);
 	}
@@ -59,7 +60,8 @@ public:
 		Eigen::Index next = 0;
 		for (int r = 0; r < rows; ++r)
 			for (int c = 0; c < columns; ++c)
-				grid.col(next++) = at(R, 2.0 * pi * c / columns, half * (2.0 * (r + 0.5) / rows - 1.0));
+				grid.col(next++) =
+					at(R, 2.0 * pi * c / columns, half * (2.0 * (r + 0.5) / rows - 1.0));
 		for (const double z : {-half, half})
 			for (int i = 0; i < onCaps; ++i)
 				grid.col(next++) = at(R * std::sqrt((i + 0.5) / onCaps), goldenAngle * i, z);
@@ -98,8 +100,8 @@ public:
 	}
 
 	AlignedBox3d boundingBox() const override { return boxAround({2.0 * h, 2.0 * h, h}); }
-	int          eulerCharacteristic() const override { return 2; }
-	bool         closed() const override { return true; }
+	int eulerCharacteristic() const override { return 2; }
+	bool closed() const override { return true; }
 
 	Vector3d project(const Vector3d& p) const override { return nearest(p).closest(p); }
 
@@ -112,15 +114,19 @@ public:
 	double featureDistance(const Vector3d& q) const override
 	{
 		static const std::array<Vector2d, 6> outline = {
-			Vector2d(-2 * h, -2 * h), Vector2d(2 * h, -2 * h), Vector2d(2 * h, 0), Vector2d(0, 0),
-			Vector2d(0, 2 * h), Vector2d(-2 * h, 2 * h)};
-		const double top = h - std::abs(q.z());
+			Vector2d(-2 * h, -2 * h),
+			Vector2d(2 * h, -2 * h),
+			Vector2d(2 * h, 0),
+			Vector2d(0, 0),
+			Vector2d(0, 2 * h),
+			Vector2d(-2 * h, 2 * h)};
+		const double top      = h - std::abs(q.z());
 		double       distance = infinity;
 		for (std::size_t k = 0; k < outline.size(); ++k) {
 			const Vector2d a = outline[k], d = outline[(k + 1) % outline.size()] - a;
 			const Vector2d p = q.head<2>() - a;
 			const double   t = std::clamp(p.dot(d) / d.squaredNorm(), 0.0, 1.0);
-			distance = std::min({distance, p.norm(), std::hypot((p - t * d).norm(), top)});
+			distance         = std::min({distance, p.norm(), std::hypot((p - t * d).norm(), top)});
 		}
 		return distance;
 	}
@@ -142,8 +148,8 @@ public:
 		for (const Square& square : m_squares)
 			for (int r = 0; r < rows; ++r)
 				for (int c = 0; c < columns; ++c)
-					grid.col(next++) =
-						square.at(h * (2.0 * (r + 0.5) / rows - 1.0), h * (2.0 * (c + 0.5) / columns - 1.0));
+					grid.col(next++) = square.at(
+						h * (2.0 * (r + 0.5) / rows - 1.0), h * (2.0 * (c + 0.5) / columns - 1.0));
 		return grid;
 	}
 
@@ -169,9 +175,10 @@ private:
 
 	const Square& nearest(const Vector3d& p) const
 	{
-		return *std::min_element(m_squares.begin(), m_squares.end(), [&](const Square& a, const Square& b) {
-			return (a.closest(p) - p).squaredNorm() < (b.closest(p) - p).squaredNorm();
-		});
+		return *std::min_element(
+			m_squares.begin(), m_squares.end(), [&](const Square& a, const Square& b) {
+				return (a.closest(p) - p).squaredNorm() < (b.closest(p) - p).squaredNorm();
+			});
 	}
 
 	std::array<Square, 14> m_squares;

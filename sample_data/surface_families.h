@@ -11,7 +11,8 @@
 namespace curvature_lines::samples {
 
 std::unique_ptr<const AnalyticSurface> makeTorus();
-std::unique_ptr<const AnalyticSurface> makeCapsule(double radius, double height); // height 0: a sphere
+// height 0: a sphere
+std::unique_ptr<const AnalyticSurface> makeCapsule(double radius, double height);
 std::unique_ptr<const AnalyticSurface> makeCube();
 std::unique_ptr<const AnalyticSurface> makeEllipsoid();
 std::unique_ptr<const AnalyticSurface> makeCylinder();
@@ -44,9 +45,10 @@ inline SurfaceFrame levelSetFrame(const Vector3d& gradient, const Eigen::Matrix3
 	const double   l  = gradient.norm();
 	const Vector3d n  = gradient / l;
 	const Vector3d e1 = n.unitOrthogonal(), e2 = n.cross(e1);
-	const double   a = e1.dot(hessian * e1) / l, b = e1.dot(hessian * e2) / l, d = e2.dot(hessian * e2) / l;
-	const double   mean = 0.5 * (a + d), half = std::hypot(0.5 * (a - d), b);
-	const double   angle = 0.5 * std::atan2(2.0 * b, a - d);
+	const double   a = e1.dot(hessian * e1) / l, b = e1.dot(hessian * e2) / l,
+				 d    = e2.dot(hessian * e2) / l;
+	const double mean = 0.5 * (a + d), half = std::hypot(0.5 * (a - d), b);
+	const double angle = 0.5 * std::atan2(2.0 * b, a - d);
 	return frameOf(n, std::cos(angle) * e1 + std::sin(angle) * e2, mean + half, mean - half);
 }
 
@@ -64,12 +66,13 @@ inline Vector2d radialDirection(const Vector3d& p)
 
 // rows x columns points of the parameter square, about `points` in all, spaced `aspect` = length of a row
 // over length of a column. A closed parameter leaves out its last sample, which is its first.
-template <typename PointAt>
-Matrix3Xd parameterGrid(
-	int points, double aspect, bool closedRow, bool closedColumn, const PointAt& pointAt)
+template<typename PointAt>
+Matrix3Xd
+parameterGrid(int points, double aspect, bool closedRow, bool closedColumn, const PointAt& pointAt)
 {
-	const int rows    = std::max(2, static_cast<int>(std::lround(std::sqrt(points / aspect))));
-	const int columns = std::max(2, static_cast<int>(std::lround(static_cast<double>(points) / rows)));
+	const int rows = std::max(2, static_cast<int>(std::lround(std::sqrt(points / aspect))));
+	const int columns =
+		std::max(2, static_cast<int>(std::lround(static_cast<double>(points) / rows)));
 	Matrix3Xd grid(3, rows * columns);
 	for (int r = 0; r < rows; ++r) {
 		for (int c = 0; c < columns; ++c) {

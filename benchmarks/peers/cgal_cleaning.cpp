@@ -26,7 +26,7 @@ struct Sample {
 	std::int64_t index;
 };
 
-template<class T, T Sample::*member>
+template<class T, T Sample::* member>
 struct Member {
 	using key_type   = Sample;
 	using value_type = T;
@@ -34,7 +34,7 @@ struct Member {
 	using category   = boost::lvalue_property_map_tag;
 
 	friend const T& get(const Member&, const Sample& sample) { return sample.*member; }
-	friend void     put(const Member&, Sample& sample, const T& value) { sample.*member = value; }
+	friend void put(const Member&, Sample& sample, const T& value) { sample.*member = value; }
 };
 
 using Positions = Member<Point, &Sample::position>;
@@ -62,8 +62,8 @@ int main(int argc, char** argv)
 {
 	const std::string method = argc > 1 ? argv[1] : "";
 	const int         given  = argc - 4; // numbers after the method and the two files
-	const bool        known  = (method == "jet" && given == 1) || (method == "bilateral" && given == 3) ||
-		(method == "outliers" && given == 2);
+	const bool known = (method == "jet" && given == 1) || (method == "bilateral" && given == 3) ||
+	                   (method == "outliers" && given == 2);
 	if (!known) {
 		std::cerr << "usage: cgal_cleaning jet CLOUD POSITIONS NEIGHBORS\n"
 					 "       cgal_cleaning bilateral CLOUD POSITIONS NEIGHBORS DEGREES ITERATIONS\n"
@@ -80,7 +80,8 @@ int main(int argc, char** argv)
 	}
 	else if (method == "bilateral") {
 		for (int i = 0; i < std::atoi(argv[6]); ++i)
-			CGAL::bilateral_smooth_point_set<Tag>(samples, k, parameters.sharpness_angle(std::atof(argv[5])));
+			CGAL::bilateral_smooth_point_set<Tag>(
+				samples, k, parameters.sharpness_angle(std::atof(argv[5])));
 	}
 	else {
 		const auto end = CGAL::remove_outliers<Tag>(

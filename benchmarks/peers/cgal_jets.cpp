@@ -39,7 +39,15 @@ Row estimate(const OrientedPoint& query, const Search::Tree& tree, int degree, i
 	auto form = jet(neighbors.begin(), neighbors.end(), degree, 2);
 	form.comply_wrt_given_normal({query[3], query[4], query[5]});
 	const Vector d = form.minimal_principal_direction(), n = form.normal_direction();
-	return {-form.principal_curvatures(1), -form.principal_curvatures(0), d.x(), d.y(), d.z(), n.x(), n.y(), n.z()};
+	return {
+		-form.principal_curvatures(1),
+		-form.principal_curvatures(0),
+		d.x(),
+		d.y(),
+		d.z(),
+		n.x(),
+		n.y(),
+		n.z()};
 }
 
 } // namespace

@@ -24,7 +24,9 @@ template<class T>
 void writeAll(const char* path, const std::vector<T>& values)
 {
 	std::ofstream(path, std::ios::binary)
-		.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(T)));
+		.write(
+			reinterpret_cast<const char*>(values.data()),
+			std::streamsize(values.size() * sizeof(T)));
 }
 
 // int64 number of points, int64 number of queries; the points; per query the int64 index of its point.
@@ -36,15 +38,14 @@ struct CloudFile {
 	{
 		std::ifstream file(path, std::ios::binary);
 		const auto    counts = readAll<std::int64_t>(file, 2);
-		points  = readAll<OrientedPoint>(file, counts[0]);
-		queries = readAll<std::int64_t>(file, counts[1]);
+		points               = readAll<OrientedPoint>(file, counts[0]);
+		queries              = readAll<std::int64_t>(file, counts[1]);
 		if (!file)
 			throw std::runtime_error(std::string("cannot read ") + path);
 	}
 };
 
-class Stopwatch
-{
+class Stopwatch {
 public:
 	double seconds() const { return std::chrono::duration<double>(Clock::now() - m_start).count(); }
 

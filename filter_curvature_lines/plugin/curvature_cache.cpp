@@ -92,8 +92,8 @@ void CurvatureEstimate::adoptNormals(LayerPoints& points)
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = prepared.representative[i]; r >= 0)
 			corrected.col(i) = forVertex(field.correctedNormals.col(r), points, prepared, i)
-								   .cast<Scalarm>()
-								   .cast<double>();
+			                       .cast<Scalarm>()
+			                       .cast<double>();
 	points.normals = corrected;
 	for (Index r = 0; r < field.size(); ++r)
 		prepared.cloud.normals.col(r) = points.normals.col(prepared.source[r]).normalized();
@@ -125,7 +125,8 @@ std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimateAndCorrect(
 	LayerPoints& points, const EstimateOptions& options, const Progress& progress)
 {
 	const bool twice = options.curvature.scaleMode == ScaleMode::Paper;
-	auto first = std::make_shared<CurvatureEstimate>(points, options, progress.sub(0, twice ? 0.5 : 1, ""));
+	auto       first =
+		std::make_shared<CurvatureEstimate>(points, options, progress.sub(0, twice ? 0.5 : 1, ""));
 	first->adoptNormals(points);
 	if (twice)
 		return estimate(points, options, progress.sub(0.5, 1, ""));

@@ -71,7 +71,7 @@ private:
 	};
 
 	std::shared_ptr<const CurvatureEstimate> find(std::uint64_t points, std::uint64_t options);
-	void                                     store(const Entry& entry);
+	void store(const Entry& entry);
 
 	std::list<Entry> m_entries; // latest first
 	std::mutex       m_mutex;   // PyMeshLab runs filters of several MeshSets in parallel

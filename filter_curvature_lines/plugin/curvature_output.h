@@ -14,7 +14,7 @@ struct CurvatureOutput {
 	bool            colorize = true;
 };
 
-void            addCurvatureOutput(RichParameterList& list);
+void addCurvatureOutput(RichParameterList& list);
 CurvatureOutput curvatureOutput(const Parameters& parameters);
 
 // K1, K2, PD1, PD2, attributes, quality and colour.

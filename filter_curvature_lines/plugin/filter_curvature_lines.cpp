@@ -25,7 +25,7 @@ RichParameterList withDefaults(const RichParameterList& given, RichParameterList
 		if (!complete.hasParameter(parameter.name()))
 			continue; // MeshLab's window adds its global settings
 		if (complete.getParameterByName(parameter.name()).value().typeName() !=
-			parameter.value().typeName())
+		    parameter.value().typeName())
 			throw MLException(
 				"Parameter '" + parameter.name() + "' has the wrong type: " +
 				complete.getParameterByName(parameter.name()).stringType() + " expected.");
@@ -104,7 +104,9 @@ std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
 {
 	const FilterSpec& spec = specOf(ID(action));
 	// Both hosts put the filter's name before it.
-	const auto failure = [](const QString& why) { return MLException(why.left(1).toUpper() + why.mid(1)); };
+	const auto failure = [](const QString& why) {
+		return MLException(why.left(1).toUpper() + why.mid(1));
+	};
 	try {
 		const RichParameterList list = withDefaults(given, spec.parameters(document));
 		FilterResults           results =

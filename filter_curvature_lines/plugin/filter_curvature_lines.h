@@ -27,8 +27,8 @@ public:
 
 	FilterClass getClass(const QAction* action) const override;
 	FilterArity filterArity(const QAction* action) const override;
-	int         getPreConditions(const QAction* action) const override;
-	int         postCondition(const QAction* action) const override;
+	int getPreConditions(const QAction* action) const override;
+	int postCondition(const QAction* action) const override;
 
 	using FilterPlugin::initParameterList;
 	RichParameterList

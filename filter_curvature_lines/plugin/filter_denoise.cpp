@@ -69,7 +69,8 @@ RichParameterList parameters(const MeshDocument&)
 		QStringList() << "Six Sectors"
 					  << "Nearest",
 		"Neighbours (Paper)",
-		"Paper: the six neighbours of each point: the closest in each sixth of the tangent plane, or the "
+		"Paper: the six neighbours of each point: the closest in each sixth of the tangent plane, "
+		"or the "
 		"six nearest.",
 		true));
 	return list;
@@ -99,14 +100,13 @@ public:
 	CorrectedNormals operator()(const Progress& progress)
 	{
 		const Stopwatch watch;
-		m_curvature =
-			m_context.cache.ofLayer(currentLayer(m_context.document), m_points, progress);
-		m_seconds = watch.seconds();
+		m_curvature = m_context.cache.ofLayer(currentLayer(m_context.document), m_points, progress);
+		m_seconds   = watch.seconds();
 		const CurvatureEstimate& estimate = *m_curvature.estimate;
 		return {estimate.field.correctedNormals, estimate.search, estimate.minimum};
 	}
 	double seconds() const { return m_seconds; }
-	void   report(FilterResults& results) const
+	void report(FilterResults& results) const
 	{
 		results.flag("curvature_reused", m_curvature.reused);
 		results.seconds("curvature", m_seconds);
@@ -173,9 +173,11 @@ FilterSpec denoiseFilter()
 		"only tell the side of the surface." +
 			helpInput +
 			"<br><br><b>Writes</b> coordinates and normals. Curvature on the layer then belongs to "
-			"the former points: compute it again. With method Paper the points also slide along the "
+			"the former points: compute it again. With method Paper the points also slide along "
+			"the "
 			"surface by about the size of the noise: do not use it on clouds whose colours matter "
-			"in detail. Outliers should be removed before (<i>Select Outliers by Robust Curvature</i>)."
+			"in detail. Outliers should be removed before (<i>Select Outliers by Robust "
+			"Curvature</i>)."
 			"<br><br>Method Paper uses curvature that is already on the layer and still fits its "
 			"points and normals, and otherwise computes it with default settings." +
 			helpReference,

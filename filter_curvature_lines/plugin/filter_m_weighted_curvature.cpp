@@ -54,7 +54,8 @@ FilterResults apply(const FilterContext& context)
 	options.bandwidth = parameters.real("bandwidth", 0.5, 20.0);
 	options.exponent  = parameters.integer("exponent", 1, 10);
 	options.neighbors = parameters.integer("neighbors", 6, 1000);
-	options.weighting = static_cast<MWeightedCurvatureOptions::Weighting>(parameters.choice("weighting"));
+	options.weighting =
+		static_cast<MWeightedCurvatureOptions::Weighting>(parameters.choice("weighting"));
 	const CurvatureOutput output = curvatureOutput(parameters);
 	UmbilicOptions        umbilicOptions;
 	umbilicOptions.ratio = umbilicRatio(parameters);
@@ -68,7 +69,11 @@ FilterResults apply(const FilterContext& context)
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(
 		prepared.cloud, search, {}, context.progress.sub(0.0, 0.4, "Finding neighborhoods"));
 	const CurvatureField field = mWeightedCurvature(
-		prepared.cloud, search, minimum, options, context.progress.sub(0.4, 1.0, "Estimating curvature"));
+		prepared.cloud,
+		search,
+		minimum,
+		options,
+		context.progress.sub(0.4, 1.0, "Estimating curvature"));
 	const VertexCurvatures values = perVertex(
 		points,
 		prepared,
@@ -95,11 +100,13 @@ FilterSpec mWeightedCurvatureFilter()
 		"<i>Robust Curvature</i> finds its scale by itself and withstands noise, outliers and "
 		"wrong normals." +
 			helpInput +
-			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); vertex "
+			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>); "
+			"vertex "
 			"quality and colour; and the vertex attributes <tt>curv_k1</tt>, <tt>curv_k2</tt>, "
 			"<tt>curv_confidence</tt>, <tt>curv_error</tt>, <tt>curv_scale</tt>, "
 			"<tt>curv_feature</tt> (always 0) and <tt>curv_status</tt>, as <i>Robust Curvature</i> "
-			"does. PD1 and PD2 are tangent to the layer's normals. Filters that go on from curvature "
+			"does. PD1 and PD2 are tangent to the layer's normals. Filters that go on from "
+			"curvature "
 			"use the robust one." +
 			helpConventions + helpReferenceTejada,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::VertexColoring,

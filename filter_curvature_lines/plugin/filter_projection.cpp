@@ -22,7 +22,8 @@ RichParameterList parameters(const MeshDocument& document)
 		current,
 		&document,
 		"Cloud that is the surface",
-		"The cloud that defines the surface; it needs oriented normals and stays as it is, unless it is "
+		"The cloud that defines the surface; it needs oriented normals and stays as it is, unless "
+		"it is "
 		"projected onto its own surface."));
 	list.addParam(RichMesh(
 		"proxy_mesh",
@@ -34,13 +35,15 @@ RichParameterList parameters(const MeshDocument& document)
 		"bandwidth",
 		Scalarm(defaults.bandwidth),
 		"Bandwidth (spacings)",
-		"Of the Gaussian weights, in local spacings of the control points (0.5 to 20). Larger removes "
+		"Of the Gaussian weights, in local spacings of the control points (0.5 to 20). Larger "
+		"removes "
 		"more noise and blurs more detail."));
 	list.addParam(RichInt(
 		"diffusion_steps",
 		defaults.diffusionSteps,
 		"Diffusion steps",
-		"Largest number of steps that move a point onto the surface along the normal (1 to 1000); it "
+		"Largest number of steps that move a point onto the surface along the normal (1 to 1000); "
+		"it "
 		"stops when nothing moves.",
 		true));
 	list.addParam(RichEnum(
@@ -51,15 +54,18 @@ RichParameterList parameters(const MeshDocument& document)
 					  << "Rational",
 		"Diffusion",
 		"What a control point says about where the surface is.<ul>"
-		"<li><b>Hermite</b>: the mean of its own height and that of its tangent plane, which does not "
+		"<li><b>Hermite</b>: the mean of its own height and that of its tangent plane, which does "
+		"not "
 		"shrink the surface</li>"
-		"<li><b>Cutoff</b>, <b>Rational</b>: its height, none or less of it where the surface bends much "
+		"<li><b>Cutoff</b>, <b>Rational</b>: its height, none or less of it where the surface "
+		"bends much "
 		"towards it, as published: shrinks bends by a share of the spacing</li></ul>"));
 	list.addParam(RichInt(
 		"resample",
 		1,
 		"Points per vertex (1: move)",
-		"1: the vertices move. More (up to 100): so many points around each vertex, projected, as a new "
+		"1: the vertices move. More (up to 100): so many points around each vertex, projected, as "
+		"a new "
 		"layer: a denser cloud on the same surface."));
 	return list;
 }
@@ -85,7 +91,10 @@ void place(Vertex& vertex, const PreparedCloud& frame, const ProjectedPoints& pr
 }
 
 void writeProjected(
-	MeshModel& layer, const LayerPoints& points, const PreparedCloud& frame, const ProjectedPoints& projected)
+	MeshModel&             layer,
+	const LayerPoints&     points,
+	const PreparedCloud&   frame,
+	const ProjectedPoints& projected)
 {
 	for (Index i = 0; i < points.size(); ++i)
 		if (projected.projected[i])
@@ -97,7 +106,7 @@ void writeProjected(
 
 void appendProjected(MeshModel& layer, const PreparedCloud& frame, const ProjectedPoints& projected)
 {
-	const auto count = std::count(projected.projected.begin(), projected.projected.end(), 1);
+	const auto count  = std::count(projected.projected.begin(), projected.projected.end(), 1);
 	auto       vertex = vcg::tri::Allocator<CMeshO>::AddVertices(layer.cm, count);
 	for (Index i = 0; i < static_cast<Index>(projected.projected.size()); ++i)
 		if (projected.projected[i])
@@ -111,7 +120,8 @@ FilterResults apply(const FilterContext& context)
 	CurvatureDrivenOptions options;
 	options.bandwidth      = parameters.real("bandwidth", 0.5, 20.0);
 	options.diffusionSteps = parameters.integer("diffusion_steps", 1, 1000);
-	options.diffusion = static_cast<CurvatureDrivenOptions::Diffusion>(parameters.choice("diffusion_function"));
+	options.diffusion =
+		static_cast<CurvatureDrivenOptions::Diffusion>(parameters.choice("diffusion_function"));
 	const Index      perPoint = parameters.integer("resample", 1, 100);
 	const MeshModel& control  = layerOf(context, "control_mesh");
 	const MeshModel& proxy    = layerOf(context, "proxy_mesh");
@@ -148,7 +158,8 @@ FilterResults apply(const FilterContext& context)
 	}
 	if (moved == 0)
 		throw MLException(
-			"no point of 'proxy_mesh' is near the surface of 'control_mesh' (within three of its point "
+			"no point of 'proxy_mesh' is near the surface of 'control_mesh' (within three of its "
+			"point "
 			"spacings); check that both layers show the same thing at the same place.");
 
 	if (perPoint == 1) {
@@ -179,15 +190,22 @@ FilterSpec projectionFilter()
 	return {
 		"Curvature-Driven Projection",
 		"compute_curvature_driven_projection",
-		"Moves the vertices of a layer onto the smooth surface that a point cloud defines: near every "
-		"vertex, the quadric of the surface's principal curvatures and directions. Also makes a cloud "
+		"Moves the vertices of a layer onto the smooth surface that a point cloud defines: near "
+		"every "
+		"vertex, the quadric of the surface's principal curvatures and directions. Also makes a "
+		"cloud "
 		"denser on its own surface."
-		"<br><br><b>Input.</b> A control cloud with oriented normals, and the layer to project (it may be "
+		"<br><br><b>Input.</b> A control cloud with oriented normals, and the layer to project (it "
+		"may be "
 		"the same). Vertices farther than three spacings from the control points, and those whose "
-		"neighbours do not tell a surface, stay and are counted. Points already on the surface stay."
-		"<br><br><b>Writes</b> coordinates and normals of the projected vertices; with more than one "
-		"point per point, a new layer '<i>resampled surface</i>' instead. For noisy scans, denoise first "
-		"(<i>Denoise Point Cloud by Robust Curvature</i>): the bandwidth here is fixed, in spacings." +
+		"neighbours do not tell a surface, stay and are counted. Points already on the surface "
+		"stay."
+		"<br><br><b>Writes</b> coordinates and normals of the projected vertices; with more than "
+		"one "
+		"point per point, a new layer '<i>resampled surface</i>' instead. For noisy scans, denoise "
+		"first "
+		"(<i>Denoise Point Cloud by Robust Curvature</i>): the bandwidth here is fixed, in "
+		"spacings." +
 			helpReferenceTejada,
 		FilterPlugin::PointSet + FilterPlugin::Sampling,
 		FilterPlugin::VARIABLE,

@@ -111,10 +111,12 @@ FilterSpec quadMeshFilter()
 		"Builds the mesh between lines of curvature: its vertices are the crossings of the two "
 		"families of lines, its edges run along the lines, and most of its faces are "
 		"quadrilaterals."
-		"<br><br><b>Input.</b> The current layer must hold lines of curvature, as <i>Trace Lines of Curvature</i> makes them; the "
+		"<br><br><b>Input.</b> The current layer must hold lines of curvature, as <i>Trace Lines "
+		"of Curvature</i> makes them; the "
 		"point "
 		"cloud they were traced on must still be there, unchanged."
-		"<br><br><b>Writes</b> a new layer '<i>curvature-aligned mesh</i>' of polygons (in MeshLab: "
+		"<br><br><b>Writes</b> a new layer '<i>curvature-aligned mesh</i>' of polygons (in "
+		"MeshLab: "
 		"triangles whose inner edges are hidden) and makes it current. Save it as OBJ: PLY drops "
 		"polygons. Every edge has at most two faces." +
 			helpReference,

@@ -31,7 +31,11 @@ RichParameterList parameters(const MeshDocument& document)
 	const int            current = document.mm() ? document.mm()->id() : -1;
 	RichParameterList    list;
 	list.addParam(RichFileSave(
-		"image_file", "", "*.png", "Image file", "Where the picture goes: a PNG file, replaced if it exists."));
+		"image_file",
+		"",
+		"*.png",
+		"Image file",
+		"Where the picture goes: a PNG file, replaced if it exists."));
 	list.addParam(RichInt("width", defaults.image.width, "Width (pixels)", "1 to 8192."));
 	list.addParam(RichInt("height", defaults.image.height, "Height (pixels)", "1 to 8192."));
 	list.addParam(RichEnum(
@@ -44,7 +48,8 @@ RichParameterList parameters(const MeshDocument& document)
 		"<li><b>Curvature-Driven</b>: quadrics of principal curvatures and directions</li>"
 		"<li><b>Moving Least Squares</b>: complete quadrics over fitted planes; needs normals for "
 		"the side only</li></ul>"));
-	list.addParam(RichColor("background", QColor(255, 255, 255), "Background", "Colour where nothing is."));
+	list.addParam(
+		RichColor("background", QColor(255, 255, 255), "Background", "Colour where nothing is."));
 	list.addParam(RichEnum(
 		"color_by",
 		0,
@@ -60,7 +65,8 @@ RichParameterList parameters(const MeshDocument& document)
 		current,
 		&document,
 		"Layer of lines (the cloud's own: no lines)",
-		"The layer whose lines (of curvature, or any edges) are drawn on the surface, in the colours of its vertices. "
+		"The layer whose lines (of curvature, or any edges) are drawn on the surface, in the "
+		"colours of its vertices. "
 		"Leave the cloud's own layer here, as it is at first, to draw none."));
 	list.addParam(RichEnum(
 		"camera",
@@ -71,9 +77,20 @@ RichParameterList parameters(const MeshDocument& document)
 		"<b>Automatic</b>: sees all points, from the side their normals face. <b>Given</b>: by the "
 		"parameters below.",
 		true));
-	list.addParam(RichPosition("camera_position", Point3m(0, 0, 2), "Camera position", "In the layer's coordinates.", true));
-	list.addParam(RichPosition("camera_target", Point3m(0, 0, 0), "Camera target", "What is in the middle of the picture.", true));
-	list.addParam(RichDirection("camera_up", Point3m(0, 1, 0), "Camera up", "What is up in the picture.", true));
+	list.addParam(RichPosition(
+		"camera_position",
+		Point3m(0, 0, 2),
+		"Camera position",
+		"In the layer's coordinates.",
+		true));
+	list.addParam(RichPosition(
+		"camera_target",
+		Point3m(0, 0, 0),
+		"Camera target",
+		"What is in the middle of the picture.",
+		true));
+	list.addParam(RichDirection(
+		"camera_up", Point3m(0, 1, 0), "Camera up", "What is up in the picture.", true));
 	list.addParam(RichFloat(
 		"field_of_view",
 		Scalarm(Camera().fieldOfView),
@@ -87,9 +104,12 @@ QString imageFile(const Parameters& parameters)
 {
 	const QString path = parameters.text("image_file");
 	if (path.isEmpty())
-		throw MLException("parameter 'image_file' is empty; name the PNG file the picture goes to.");
+		throw MLException(
+			"parameter 'image_file' is empty; name the PNG file the picture goes to.");
 	if (QFileInfo(path).suffix().toLower() != "png")
-		throw MLException("parameter 'image_file' is '" + path + "'; pictures are PNG files, the name must end in .png.");
+		throw MLException(
+			"parameter 'image_file' is '" + path +
+			"'; pictures are PNG files, the name must end in .png.");
 	if (!QFileInfo(path).absoluteDir().exists())
 		throw MLException("the folder of '" + path + "' does not exist; make it first.");
 	return path;
@@ -107,7 +127,8 @@ Camera cameraOf(const Parameters& parameters, const PreparedCloud& prepared, dou
 	camera.up          = parameters.point("camera_up");
 	if (!((camera.target - camera.position).cross(camera.up).norm() > 1e-12))
 		throw MLException(
-			"'camera_up' runs along the view from 'camera_position' to 'camera_target'; give another "
+			"'camera_up' runs along the view from 'camera_position' to 'camera_target'; give "
+			"another "
 			"direction.");
 	return camera;
 }
@@ -118,11 +139,11 @@ Eigen::Vector3d colorOf(const CVertexO& vertex)
 }
 
 Eigen::Matrix3Xd colorsOf(
-	ColorBy              colorBy,
-	const MeshModel&     layer,
-	const LayerPoints&   points,
-	const PreparedCloud& prepared,
-	const ControlPoints& control,
+	ColorBy                     colorBy,
+	const MeshModel&            layer,
+	const LayerPoints&          points,
+	const PreparedCloud&        prepared,
+	const ControlPoints&        control,
 	const MinimumNeighborhoods& minimum)
 {
 	const Index      n = prepared.cloud.size();
@@ -156,7 +177,8 @@ PictureLines linesOf(const MeshModel& layer, const PreparedCloud& prepared)
 	for (const CEdgeO& edge : layer.cm.edge) {
 		if (edge.IsD())
 			continue;
-		const auto from = vcg::tri::Index(layer.cm, edge.cV(0)), to = vcg::tri::Index(layer.cm, edge.cV(1));
+		const auto from = vcg::tri::Index(layer.cm, edge.cV(0)),
+				   to   = vcg::tri::Index(layer.cm, edge.cV(1));
 		lines.segments.emplace_back(static_cast<Index>(from), static_cast<Index>(to));
 		colors.push_back(colorOf(*edge.cV(0)));
 	}
@@ -170,7 +192,8 @@ void savePicture(const Picture& picture, const QString& path)
 {
 	QImage image(picture.width, picture.height, QImage::Format_RGB888);
 	for (int y = 0; y < picture.height; ++y)
-		std::copy_n(&picture.rgb[std::size_t(3) * picture.width * y], 3 * picture.width, image.scanLine(y));
+		std::copy_n(
+			&picture.rgb[std::size_t(3) * picture.width * y], 3 * picture.width, image.scanLine(y));
 	QSaveFile file(path); // nothing half-written is left behind
 	if (!file.open(QIODevice::WriteOnly) || !image.save(&file, "PNG") || !file.commit())
 		throw MLException("'" + path + "' cannot be written: " + file.errorString() + ".");
@@ -181,32 +204,35 @@ FilterResults apply(const FilterContext& context)
 	const Parameters& parameters = context.parameters;
 	const QString     path       = imageFile(parameters);
 	PictureOptions    options;
-	options.image.width     = parameters.integer("width", 1, 8192);
-	options.image.height    = parameters.integer("height", 1, 8192);
-	options.background      = parameters.color("background");
-	const auto kind         = static_cast<SurfaceKind>(parameters.choice("surface"));
-	const auto colorBy      = static_cast<ColorBy>(parameters.choice("color_by"));
+	options.image.width  = parameters.integer("width", 1, 8192);
+	options.image.height = parameters.integer("height", 1, 8192);
+	options.background   = parameters.color("background");
+	const auto kind      = static_cast<SurfaceKind>(parameters.choice("surface"));
+	const auto colorBy   = static_cast<ColorBy>(parameters.choice("color_by"));
 
 	const MeshModel& layer     = currentLayer(context.document);
 	const int        lineId    = parameters.layerId("lines");
 	const MeshModel* lineLayer = context.document.getMesh(lineId);
 	if (lineLayer == nullptr)
-		throw MLException("parameter 'lines' is " + QString::number(lineId) + ", and there is no such layer.");
+		throw MLException(
+			"parameter 'lines' is " + QString::number(lineId) + ", and there is no such layer.");
 	if (lineLayer != &layer && lineLayer->cm.en == 0)
-		throw MLException("the layer '" + lineLayer->label() + "' named as 'lines' holds no edges.");
+		throw MLException(
+			"the layer '" + lineLayer->label() + "' named as 'lines' holds no edges.");
 	if (lineLayer != &layer)
 		requireSameMatrix(layer, *lineLayer, "the cloud and the layer of 'lines'");
 
-	const LayerPoints          points = readOrientedPoints(layer);
-	FilterResults              results;
-	Stopwatch                  total, stage;
+	const LayerPoints points = readOrientedPoints(layer);
+	FilterResults     results;
+	Stopwatch         total, stage;
 	// Rays next to each other read points next to each other.
 	const PreparedCloud prepared = inSpatialOrder(prepareCloud(points.positions, points.normals));
-	const Camera camera = cameraOf(parameters, prepared, double(options.image.width) / options.image.height);
+	const Camera        camera =
+		cameraOf(parameters, prepared, double(options.image.width) / options.image.height);
 	const NeighborSearch       search(prepared.cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(
 		prepared.cloud, search, {}, context.progress.sub(0.0, 0.2, "Finding neighborhoods"));
-	const ControlPoints control{prepared.cloud, search, minimum.spacing};
+	const ControlPoints    control{prepared.cloud, search, minimum.spacing};
 	const Eigen::Matrix3Xd colors = colorsOf(colorBy, layer, points, prepared, control, minimum);
 	const PictureLines lines = lineLayer == &layer ? PictureLines() : linesOf(*lineLayer, prepared);
 	std::unique_ptr<const PointSetSurface> surface;
@@ -216,8 +242,8 @@ FilterResults apply(const FilterContext& context)
 		surface = std::make_unique<MovingLeastSquaresSurface>(control);
 	const RayTracer tracer(*surface, control, options.image);
 	results.seconds("preparation", stage.lap());
-	const Picture picture =
-		renderPicture(tracer, control, colors, lines, camera, options, context.progress.sub(0.2, 1.0, "Drawing"));
+	const Picture picture = renderPicture(
+		tracer, control, colors, lines, camera, options, context.progress.sub(0.2, 1.0, "Drawing"));
 	results.seconds("rendering", stage.lap());
 	savePicture(picture, path);
 
@@ -236,11 +262,14 @@ FilterSpec rayTraceFilter()
 	return {
 		"Ray-Trace Point-Set Surface",
 		"save_ray_traced_point_set_image",
-		"Draws the smooth surface between the points of a cloud, without a mesh and without a screen: "
-		"every pixel's ray is followed onto the surface itself. Lines of another layer can be drawn on "
+		"Draws the smooth surface between the points of a cloud, without a mesh and without a "
+		"screen: "
+		"every pixel's ray is followed onto the surface itself. Lines of another layer can be "
+		"drawn on "
 		"it." +
 			helpInput +
-			"<br><br><b>Writes</b> a PNG file. The layers stay as they are. The surface goes through the "
+			"<br><br><b>Writes</b> a PNG file. The layers stay as they are. The surface goes "
+			"through the "
 			"points as they are, noise and all: for noisy scans, denoise first." +
 			helpReferenceTejada,
 		FilterPlugin::PointSet + FilterPlugin::RangeMap,

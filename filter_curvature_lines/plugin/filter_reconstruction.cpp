@@ -27,8 +27,10 @@ RichParameterList parameters(const MeshDocument&)
 					  << "Traced Lines",
 		"Method",
 		"How the mesh is found.<ul>"
-		"<li><b>Position Field</b>: on a triangulation of the cleaned points, by two phases that follow "
-		"the principal directions; rims and sharp creases become edges, and every face is certified to be "
+		"<li><b>Position Field</b>: on a triangulation of the cleaned points, by two phases that "
+		"follow "
+		"the principal directions; rims and sharp creases become edges, and every face is "
+		"certified to be "
 		"a disk</li>"
 		"<li><b>Traced Lines</b>: between traced lines of curvature, as published</li></ul>"));
 	list.addParam(RichInt(
@@ -48,14 +50,17 @@ RichParameterList parameters(const MeshDocument&)
 		"anisotropy",
 		static_cast<Scalarm>(defaults.anisotropy),
 		"Anisotropy (1: square faces)",
-		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; 1 = "
+		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; "
+		"1 = "
 		"not at all)."));
 	list.addParam(RichFloat(
 		"points_per_vertex",
 		static_cast<Scalarm>(defaults.pointsPerVertex),
 		"Points used per vertex (0: all)",
-		"Position Field with a target number of vertices: a cloud with more points per vertex is thinned to so "
-		"many, evenly and not below 20000 points, once its outliers are out (0 = use all points, which takes "
+		"Position Field with a target number of vertices: a cloud with more points per vertex is "
+		"thinned to so "
+		"many, evenly and not below 20000 points, once its outliers are out (0 = use all points, "
+		"which takes "
 		"longer). Keep all to have all in the cleaned cloud.",
 		true));
 	addMeshParameters(list);
@@ -70,7 +75,8 @@ RichParameterList parameters(const MeshDocument&)
 		"smooth_directions",
 		defaults.smoothDirections,
 		"Smooth the directions",
-		"Traced Lines: smooth the field of principal directions before tracing. A position field always "
+		"Traced Lines: smooth the field of principal directions before tracing. A position field "
+		"always "
 		"is, as far as the directions are uncertain."));
 	list.addParam(RichEnum(
 		"estimate_normals",
@@ -88,7 +94,8 @@ RichParameterList parameters(const MeshDocument&)
 		"keep_intermediate_layers",
 		false,
 		"Keep intermediate layers",
-		"Add the cleaned cloud, with its curvature and how far each point moved, and the lines as layers of their "
+		"Add the cleaned cloud, with its curvature and how far each point moved, and the lines as "
+		"layers of their "
 		"own."));
 	return list;
 }
@@ -159,7 +166,8 @@ void writeCleanedCloud(
 	writeQuality(layer, points, 0.5 * (values.k1 + values.k2));
 	Eigen::VectorXd moved(n);
 	for (Index i = 0; i < n; ++i)
-		moved[i] = (result.cloud.positions.col(i) - frame.cloud.positions.col(result.kept[i])).norm();
+		moved[i] =
+			(result.cloud.positions.col(i) - frame.cloud.positions.col(result.kept[i])).norm();
 	writeAttribute(layer, points, "moved", frame.diagonal * moved);
 }
 
@@ -198,8 +206,8 @@ FilterResults apply(const FilterContext& context)
 	LayerPoints      points = readPoints(source);
 	FilterResults    results;
 	Stopwatch        total;
-	const bool estimated = estimate == EstimateNormals::Always ||
-						   (estimate == EstimateNormals::IfMissing && mostNormalsMissing(points));
+	const bool       estimated = estimate == EstimateNormals::Always ||
+	                       (estimate == EstimateNormals::IfMissing && mostNormalsMissing(points));
 	if (estimated) {
 		estimateMissingNormals(points, context.progress.sub(0.0, 0.1, "Estimating normals"));
 		results.seconds("normals", total.seconds());
@@ -213,7 +221,8 @@ FilterResults apply(const FilterContext& context)
 		reconstruct(prepared.cloud, options, context.progress.sub(0.1, 1.0, ""));
 	if (result.mesh.mesh.faceCount() == 0)
 		throw MLException(
-			"no face was found: the cloud is too sparse for the chosen density, or (Traced Lines) flat or "
+			"no face was found: the cloud is too sparse for the chosen density, or (Traced Lines) "
+			"flat or "
 			"umbilic everywhere. Raise 'target_vertices', or check that the normals are right.");
 
 	NewLayers layers(context.document);
@@ -250,7 +259,8 @@ FilterSpec reconstructionFilter()
 		"generate_surface_reconstruction_curvature_aligned",
 		"Makes a quad-dominant mesh from a point cloud, its edges aligned with the principal "
 		"directions of curvature. In one step: outliers are left out, normals and positions "
-		"denoised, curvature and directions estimated, creases and rims found, and the faces between "
+		"denoised, curvature and directions estimated, creases and rims found, and the faces "
+		"between "
 		"lines along the directions built." +
 			helpInput +
 			" This filter can estimate missing normals itself."

@@ -37,9 +37,9 @@ FilterResults apply(const FilterContext& context)
 	LayerPoints   points = readOrientedPoints(layer);
 	FilterResults results;
 	Stopwatch     total, stage;
-	const auto estimate =
-		correct ? context.cache.estimateAndCorrect(points, options, context.progress) :
-				  context.cache.estimate(points, options, context.progress);
+	const auto    estimate = correct
+	                             ? context.cache.estimateAndCorrect(points, options, context.progress)
+	                             : context.cache.estimate(points, options, context.progress);
 	results.seconds("curvature", stage.lap());
 
 	const UmbilicRegions umbilics =
@@ -69,15 +69,22 @@ FilterSpec robustCurvatureFilter()
 		"Principal curvatures and directions of a point cloud, insensitive to noise, outliers and "
 		"wrong normals. An M-estimator (Geman-McClure) gives what disagrees less weight, down to "
 		"none, so that outliers and points across a sharp edge do not count."
-		"<br><br>By default (Scale <i>Adaptive</i>) surfaces are fitted to the positions, in regions whose "
-		"size is found from the cloud; the normals only tell the side. With Scale <i>Paper</i> a tensor is "
+		"<br><br>By default (Scale <i>Adaptive</i>) surfaces are fitted to the positions, in "
+		"regions whose "
+		"size is found from the cloud; the normals only tell the side. With Scale <i>Paper</i> a "
+		"tensor is "
 		"fitted to the normals within three spacings, as published." +
 			helpInput +
-			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>; tangent to "
-			"the fitted surface); vertex quality and colour; and the vertex attributes <tt>curv_k1</tt>, "
-			"<tt>curv_k2</tt>, <tt>curv_confidence</tt>, <tt>curv_error</tt> (standard error of k1 - k2), "
-			"<tt>curv_scale</tt> (radius used), <tt>curv_feature</tt> (sharp edge nearby, 0 to 1) and "
-			"<tt>curv_status</tt> (0 ok, 1 boundary, 2 too few neighbours, 3 umbilic, 4 isolated, 5 "
+			"<br><br><b>Writes</b> K1, K2, PD1, PD2 (shown by the decorator <i>Curvature</i>; "
+			"tangent to "
+			"the fitted surface); vertex quality and colour; and the vertex attributes "
+			"<tt>curv_k1</tt>, "
+			"<tt>curv_k2</tt>, <tt>curv_confidence</tt>, <tt>curv_error</tt> (standard error of k1 "
+			"- k2), "
+			"<tt>curv_scale</tt> (radius used), <tt>curv_feature</tt> (sharp edge nearby, 0 to 1) "
+			"and "
+			"<tt>curv_status</tt> (0 ok, 1 boundary, 2 too few neighbours, 3 umbilic, 4 isolated, "
+			"5 "
 			"invalid). Points without an estimate get curvature 0." +
 			helpConventions + helpReference,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::VertexColoring,

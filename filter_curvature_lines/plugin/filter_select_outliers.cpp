@@ -67,7 +67,7 @@ Index deleteVertices(CMeshO& mesh, const std::vector<std::size_t>& doomed)
 	}
 	for (CEdgeO& edge : mesh.edge)
 		if (!edge.IsD() &&
-			(dead[vcg::tri::Index(mesh, edge.V(0))] || dead[vcg::tri::Index(mesh, edge.V(1))]))
+		    (dead[vcg::tri::Index(mesh, edge.V(0))] || dead[vcg::tri::Index(mesh, edge.V(1))]))
 			Allocator::DeleteEdge(mesh, edge);
 	for (const std::size_t v : doomed)
 		Allocator::DeleteVertex(mesh, mesh.vert[v]);

@@ -20,14 +20,16 @@ RichParameterList parameters(const MeshDocument&)
 		"min_angle",
 		Scalarm(defaults.minAngle),
 		"Smallest angle (degrees)",
-		"A line is kept if somewhere the normals of its two faces differ by this many degrees (5 to "
+		"A line is kept if somewhere the normals of its two faces differ by this many degrees (5 "
+		"to "
 		"150); from there it is followed until six tenths of it are left. Lower values find softer "
 		"edges, and more that noise makes up."));
 	list.addParam(RichFloat(
 		"spacing",
 		Scalarm(defaults.spacing),
 		"Vertex spacing (length; 0: automatic)",
-		"Distance between the vertices of the lines, in the layer's units; 0 = automatic, 0.7 times "
+		"Distance between the vertices of the lines, in the layer's units; 0 = automatic, 0.7 "
+		"times "
 		"the point spacing."));
 	list.addParam(RichBool(
 		"denoise",
@@ -76,8 +78,8 @@ FilterResults apply(const FilterContext& context)
 		context.progress.sub(0.85, 1.0, "Finding creases"));
 	results.seconds("creases", stage.lap());
 
-	double length   = 0.0;
-	Index  closed   = 0, concave = 0;
+	double length = 0.0;
+	Index  closed = 0, concave = 0;
 	for (const CreaseCurve& curve : creases.curves) {
 		length += prepared.diagonal * curve.length();
 		closed += curve.closed;
@@ -111,15 +113,20 @@ FilterSpec sharpFeaturesFilter()
 	return {
 		"Extract Sharp Feature Lines",
 		"generate_sharp_feature_lines",
-		"Finds the sharp edges of a point cloud, without a mesh: lines where two faces meet at an angle, and "
-		"the corners where they end together. Both faces are continued to where they intersect, so the "
+		"Finds the sharp edges of a point cloud, without a mesh: lines where two faces meet at an "
+		"angle, and "
+		"the corners where they end together. Both faces are continued to where they intersect, so "
+		"the "
 		"lines are more exact than the points beside them. Rims, and smooth bends of several point "
 		"spacings, are no such lines." +
 			helpInput +
 			" Remove outliers before (<i>Select Outliers by Robust Curvature</i>)."
-			"<br><br><b>Writes</b> a new layer '<i>sharp features</i>' of vertices and edges, unless there "
-			"is no sharp edge: normals (the mean of the two faces'), quality (the angle between the faces' "
-			"normals in degrees, positive where convex), colour (orange convex, blue concave), attribute "
+			"<br><br><b>Writes</b> a new layer '<i>sharp features</i>' of vertices and edges, "
+			"unless there "
+			"is no sharp edge: normals (the mean of the two faces'), quality (the angle between "
+			"the faces' "
+			"normals in degrees, positive where convex), colour (orange convex, blue concave), "
+			"attribute "
 			"<tt>line_id</tt>. Save it as OBJ: PLY drops edges." +
 			helpReference,
 		FilterPlugin::PointSet + FilterPlugin::MeshCreation,

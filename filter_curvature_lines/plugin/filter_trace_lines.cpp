@@ -22,10 +22,13 @@ RichParameterList parameters(const MeshDocument&)
 		QStringList() << "Traced Lines"
 					  << "Position Field",
 		"Method",
-		"<ul><li><b>Traced Lines</b>: one line after the other follows the directions, as published; they are where "
+		"<ul><li><b>Traced Lines</b>: one line after the other follows the directions, as "
+		"published; they are where "
 		"the lines of curvature are</li>"
-		"<li><b>Position Field</b>: the lines of the mesh that Surface Reconstruction makes, all at once and "
-		"evenly spaced; clean the cloud first. The parameters below do not concern it, except epsilon and "
+		"<li><b>Position Field</b>: the lines of the mesh that Surface Reconstruction makes, all "
+		"at once and "
+		"evenly spaced; clean the cloud first. The parameters below do not concern it, except "
+		"epsilon and "
 		"the target number</li></ul>"));
 	list.addParam(RichFloat(
 		"epsilon",
@@ -73,8 +76,10 @@ RichParameterList parameters(const MeshDocument&)
 		"stop_factor",
 		Scalarm(defaults.stopFactor),
 		"Stop factor",
-		"A line ends where it comes closer to the next one than this times the distance new lines keep "
-		"(0.1 to 1). Small values let lines run on through narrow places: gaps are less even, and the mesh "
+		"A line ends where it comes closer to the next one than this times the distance new lines "
+		"keep "
+		"(0.1 to 1). Small values let lines run on through narrow places: gaps are less even, and "
+		"the mesh "
 		"between the lines has more quads (0.5: about 99 %).",
 		true));
 	addUmbilicRatio(list);
@@ -156,9 +161,10 @@ FilterResults apply(const FilterContext& context)
 	const LineTracingOptions options = tracingOptions(parameters, estimate.prepared.diagonal);
 	const Progress           tracing = context.progress.sub(0.6, 1.0, "Tracing lines");
 	const LineNetwork        lines =
-		parameters.choice("method") == 1 ?
-				   positionFieldLines(cloud, options, tracing) :
-				   traceLines(cloud, *curvature.field, estimate.minimum, umbilics, cells, options, tracing);
+        parameters.choice("method") == 1
+				   ? positionFieldLines(cloud, options, tracing)
+				   : traceLines(
+                  cloud, *curvature.field, estimate.minimum, umbilics, cells, options, tracing);
 	results.seconds("tracing", stage.lap());
 	if (lines.lines() == 0)
 		throw MLException(
@@ -214,7 +220,8 @@ FilterSpec traceLinesFilter()
 			"makes it current: normals, quality (the curvature along the line), colour (orange "
 			"along PD1, blue along PD2) and the vertex attributes <tt>line_id</tt>, "
 			"<tt>line_family</tt> (1 or 2), <tt>line_closed</tt> (1 of a closed line) and "
-			"<tt>line_arc_length</tt> (from the line's first vertex, in the layer's units). <i>Build Curvature-Aligned Quad Mesh</i> goes on from "
+			"<tt>line_arc_length</tt> (from the line's first vertex, in the layer's units). "
+			"<i>Build Curvature-Aligned Quad Mesh</i> goes on from "
 			"there. Save it as OBJ: PLY drops edges." +
 			helpChaining + helpConventions + helpReference,
 		FilterPlugin::Normal + FilterPlugin::PointSet + FilterPlugin::MeshCreation,

@@ -10,14 +10,17 @@ namespace curvature_lines {
 // Short: MeshLab shows all of it above the parameters, and a screen has only so many lines.
 inline const QString helpInput =
 	"<br><br><b>Input.</b> A point cloud with normals that point outward; of a mesh, the vertices. "
-	"Points with non-finite coordinates or without a normal take no part. No normals? Run <i>Compute "
+	"Points with non-finite coordinates or without a normal take no part. No normals? Run "
+	"<i>Compute "
 	"normals for point sets</i> first.";
 
-inline const QString helpConventions =
-	"<br><br><b>Conventions.</b> Convex is positive: a unit sphere has k1 = k2 = +1; k1 &gt;= k2; PD1, PD2 "
-	"and the normal of the fitted surface are orthogonal unit vectors. Lengths are in the layer's units "
-	"(freeze its matrix first if that scales), curvatures in 1/length, spacings are distances between "
-	"neighbouring points.";
+inline const QString helpConventions = "<br><br><b>Conventions.</b> Convex is positive: a unit "
+									   "sphere has k1 = k2 = +1; k1 &gt;= k2; PD1, PD2 "
+									   "and the normal of the fitted surface are orthogonal unit "
+									   "vectors. Lengths are in the layer's units "
+									   "(freeze its matrix first if that scales), curvatures in "
+									   "1/length, spacings are distances between "
+									   "neighbouring points.";
 
 inline const QString helpChaining =
 	"<br><br>Curvature that is already on the layer and still fits its points and normals is used; "

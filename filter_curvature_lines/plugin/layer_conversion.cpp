@@ -37,7 +37,7 @@ Eigen::Vector3d unitNormal(const LayerPoints& points, Index i)
 	const Eigen::Vector3d n      = points.normals.col(i);
 	const double          length = n.stableNorm();
 	return std::isfinite(length) && length > 0.0 ? Eigen::Vector3d(n / length)
-												 : Eigen::Vector3d::UnitZ();
+	                                             : Eigen::Vector3d::UnitZ();
 }
 
 // From the vertex its prepared point was taken from.
@@ -79,9 +79,10 @@ void requireSameMatrix(const MeshModel& a, const MeshModel& b, const QString& na
 	for (int r = 0; r < 4; ++r)
 		for (int c = 0; c < 4; ++c)
 			if (!(std::abs(a.cm.Tr[r][c] - b.cm.Tr[r][c]) <=
-				  1e-5 * (1.0 + std::abs(double(b.cm.Tr[r][c])))))
+			      1e-5 * (1.0 + std::abs(double(b.cm.Tr[r][c])))))
 				throw MLException(
-					names + " have different matrices; freeze or reset the matrices of both layers the "
+					names +
+					" have different matrices; freeze or reset the matrices of both layers the "
 					"same way.");
 }
 
@@ -124,12 +125,12 @@ VertexCurvatures perVertex(
 	const Index      n = points.size();
 	VertexCurvatures values;
 	for (Eigen::VectorXd* v :
-		 {&values.k1,
-		  &values.k2,
-		  &values.error,
-		  &values.radius,
-		  &values.confidence,
-		  &values.feature})
+	     {&values.k1,
+	      &values.k2,
+	      &values.error,
+	      &values.radius,
+	      &values.confidence,
+	      &values.feature})
 		v->setZero(n);
 	values.d1.resize(3, n);
 	values.d2.resize(3, n);
@@ -144,9 +145,10 @@ VertexCurvatures perVertex(
 		}
 		else {
 			// A duplicate seen from the other side: its curvatures change sign and so trade places.
-			const bool            flipped  = facesAway(points, prepared, i);
-			const Eigen::Vector3d surface  = forVertex(prepared.cloud.normals.col(r), points, prepared, i);
-			const bool            accurate = normal.dot(surface) > agreementCosine;
+			const bool            flipped = facesAway(points, prepared, i);
+			const Eigen::Vector3d surface =
+				forVertex(prepared.cloud.normals.col(r), points, prepared, i);
+			const bool accurate = normal.dot(surface) > agreementCosine;
 			tangentPair(
 				flipped ? field.d2.col(r) : field.d1.col(r), accurate ? normal : surface, d1, d2);
 			values.k1[i]         = (flipped ? -field.k2[r] : field.k1[r]) / prepared.diagonal;
@@ -156,8 +158,8 @@ VertexCurvatures perVertex(
 			values.confidence[i] = field.confidence[r];
 			values.feature[i]    = field.feature[r];
 			values.status[i]     = field.status[r] == PointStatus::Ok && umbilic[r]
-									   ? PointStatus::Umbilic
-									   : field.status[r];
+			                           ? PointStatus::Umbilic
+			                           : field.status[r];
 		}
 		values.d1.col(i) = d1;
 		values.d2.col(i) = d2;
@@ -229,7 +231,10 @@ void writeColorRamp(
 }
 
 Eigen::Vector3d forVertex(
-	const Eigen::Vector3d& normal, const LayerPoints& points, const PreparedCloud& prepared, Index vertex)
+	const Eigen::Vector3d& normal,
+	const LayerPoints&     points,
+	const PreparedCloud&   prepared,
+	Index                  vertex)
 {
 	return facesAway(points, prepared, vertex) ? Eigen::Vector3d(-normal) : normal;
 }

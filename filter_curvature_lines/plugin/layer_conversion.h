@@ -32,7 +32,7 @@ LayerPoints readOrientedPoints(const MeshModel& layer);
 
 // Curvature of every point of a layer, in model units and with no value a host could choke on.
 struct VertexCurvatures {
-	Eigen::VectorXd  k1, k2, error, radius, confidence, feature; // N
+	Eigen::VectorXd k1, k2, error, radius, confidence, feature; // N
 	// 3 x N unit, tangent to the vertex normal where it agrees with the estimate's within a degree, else
 	// to the latter.
 	Eigen::Matrix3Xd         d1, d2;
@@ -63,7 +63,10 @@ void writeAttribute(
 // its own side. A vertex's own normal may be wrong, so it does not tell the side of a point that is its own.
 // `points` have the normals the cloud was prepared from.
 Eigen::Vector3d forVertex(
-	const Eigen::Vector3d& normal, const LayerPoints& points, const PreparedCloud& prepared, Index vertex);
+	const Eigen::Vector3d& normal,
+	const LayerPoints&     points,
+	const PreparedCloud&   prepared,
+	Index                  vertex);
 
 // Coordinates or normals of the prepared points go to all their vertices; the others stay.
 void writePositions(
@@ -95,7 +98,7 @@ public:
 
 	// An empty layer with the matrix of `source`. Hosts take labels with dots for file names.
 	MeshModel& add(const QString& label, const MeshModel& source);
-	void       keep(const MeshModel& current);
+	void keep(const MeshModel& current);
 
 private:
 	MeshDocument&    m_document;

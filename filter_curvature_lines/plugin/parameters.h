@@ -14,8 +14,8 @@ class Parameters {
 public:
 	explicit Parameters(const RichParameterList& list) : m_list(list) {}
 
-	bool   flag(const QString& name) const;
-	Index  integer(const QString& name, int min, int max) const;
+	bool flag(const QString& name) const;
+	Index integer(const QString& name, int min, int max) const;
 	double real(const QString& name, double min, double max) const;
 	// 0 = automatic, or a value between the bounds.
 	double automaticOr(const QString& name, double min, double max) const;
@@ -24,7 +24,7 @@ public:
 	// Position in the list of labels.
 	int choice(const QString& name) const;
 	int layerId(const QString& name) const;
-	QString         text(const QString& name) const;
+	QString text(const QString& name) const;
 	Eigen::Vector3d color(const QString& name) const; // red, green, blue, 0..1
 	Eigen::Vector3d point(const QString& name) const; // finite
 
@@ -33,14 +33,14 @@ private:
 };
 
 // Adaptive or published.
-void      addScaleMode(RichParameterList& list, bool advanced);
+void addScaleMode(RichParameterList& list, bool advanced);
 ScaleMode scaleMode(const Parameters& parameters);
 
 // The knobs of the curvature estimate, scale mode included.
-void            addEstimateParameters(RichParameterList& list);
+void addEstimateParameters(RichParameterList& list);
 EstimateOptions estimateOptions(const Parameters& parameters);
 
-void   addUmbilicRatio(RichParameterList& list);
+void addUmbilicRatio(RichParameterList& list);
 double umbilicRatio(const Parameters& parameters);
 
 } // namespace curvature_lines

@@ -16,8 +16,8 @@ MeshTopology
 writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud& frame);
 
 // What the filters that end in a mesh share: two parameters and the counts.
-void            addMeshParameters(RichParameterList& list);
+void addMeshParameters(RichParameterList& list);
 QuadMeshOptions meshOptions(const Parameters& parameters);
-void            reportMesh(FilterResults& results, const MeshTopology& topology);
+void reportMesh(FilterResults& results, const MeshTopology& topology);
 
 } // namespace curvature_lines

@@ -85,20 +85,20 @@ Chains chainsOf(const CMeshO& mesh)
 	std::vector<char> visited(mesh.vert.size(), 0);
 	Chains            chains;
 	const auto        follow = [&](Index start) {
-		std::vector<Index> chain = {start};
-		visited[start]           = 1;
-		for (Index at = start;;) {
-			Index next = -1;
-			for (const Index n : neighbors[at])
-				if (!visited[n] && (next < 0 || n < next))
-					next = n;
-			if (next < 0)
-				break;
-			visited[next] = 1;
-			chain.push_back(next);
-			at = next;
-		}
-		chains.vertices.push_back(std::move(chain));
+        std::vector<Index> chain = {start};
+        visited[start]           = 1;
+        for (Index at = start;;) {
+            Index next = -1;
+            for (const Index n : neighbors[at])
+                if (!visited[n] && (next < 0 || n < next))
+                    next = n;
+            if (next < 0)
+                break;
+            visited[next] = 1;
+            chain.push_back(next);
+            at = next;
+        }
+        chains.vertices.push_back(std::move(chain));
 	};
 	const auto count = static_cast<Index>(neighbors.size());
 	for (Index v = 0; v < count; ++v) {
@@ -124,10 +124,10 @@ void writeLines(
 	layer.updateDataMask(MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR);
 	CMeshO& mesh = layer.cm;
 	Allocator::AddVertices(mesh, lines.vertices.cols());
-	auto id     = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_id");
-	auto family = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_family");
-	auto closed = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_closed");
-	auto length = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_arc_length");
+	auto id                   = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_id");
+	auto family               = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_family");
+	auto closed               = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_closed");
+	auto length               = Allocator::GetPerVertexAttribute<Scalarm>(mesh, "line_arc_length");
 	const Eigen::VectorXd arc = arcLengths(lines);
 	for (Index l = 0; l < lines.lines(); ++l) {
 		for (Index v = lines.offsets[l]; v < lines.offsets[l + 1]; ++v) {
@@ -162,13 +162,13 @@ void writeCreases(MeshModel& layer, const Creases& creases, const PreparedCloud&
 	for (std::size_t l = 0; l < closed.size(); ++l) {
 		const CreaseCurve& curve = creases.curves[l];
 		for (Index k = 0; k < curve.size(); ++k) {
-			const Index v    = offsets[l] + k;
-			CVertexO& vertex = mesh.vert[v];
-			vertex.P()       = toPoint(frame.toModel(curve.positions.col(k)));
-			vertex.N()       = toPoint((curve.left.col(k) + curve.right.col(k)).normalized());
-			vertex.Q()       = Scalarm(curve.angle[k] * 180.0 / EIGEN_PI);
-			vertex.C()       = familyColor(curve.angle[k] > 0.0 ? 1 : 2);
-			id[v]            = Scalarm(l);
+			const Index v      = offsets[l] + k;
+			CVertexO&   vertex = mesh.vert[v];
+			vertex.P()         = toPoint(frame.toModel(curve.positions.col(k)));
+			vertex.N()         = toPoint((curve.left.col(k) + curve.right.col(k)).normalized());
+			vertex.Q()         = Scalarm(curve.angle[k] * 180.0 / EIGEN_PI);
+			vertex.C()         = familyColor(curve.angle[k] > 0.0 ? 1 : 2);
+			id[v]              = Scalarm(l);
 		}
 	}
 	writeEdges(mesh, offsets, closed);
@@ -181,7 +181,7 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 	const auto    id     = Allocator::FindPerVertexAttribute<Scalarm>(mesh, "line_id");
 	const auto    family = Allocator::FindPerVertexAttribute<Scalarm>(mesh, "line_family");
 	if (mesh.en == 0 || !Allocator::IsValidHandle(mesh, id) ||
-		!Allocator::IsValidHandle(mesh, family))
+	    !Allocator::IsValidHandle(mesh, family))
 		throw MLException(
 			"the current layer '" + layer.label() +
 			"' holds no lines of curvature (edges with the vertex attributes line_id and "

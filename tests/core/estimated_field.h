@@ -60,27 +60,28 @@ estimateAdaptiveField(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd&
 }
 
 struct CurvatureErrors {
-	double k1 = 0.0, k2 = 0.0;  // RMS, 1/model length
-	double direction    = 0.0;  // mean angle, radians
+	double k1 = 0.0, k2 = 0.0;                    // RMS, 1/model length
+	double direction    = 0.0;                    // mean angle, radians
 	double normalBefore = 0.0, normalAfter = 0.0; // RMS, degrees
 };
 
-inline CurvatureErrors curvatureErrors(
-	const EstimatedField& estimated, const samples::GroundTruth& truth)
+inline CurvatureErrors
+curvatureErrors(const EstimatedField& estimated, const samples::GroundTruth& truth)
 {
-	const auto angle = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); };
+	const auto      angle = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); };
 	CurvatureErrors errors;
 	const Index     n = estimated.field.size();
 	for (Index i = 0; i < n; ++i) {
 		const Index s = estimated.prepared.source[i];
 		errors.k1 += std::pow(estimated.k1(i) - truth.k1[s], 2) / n;
 		errors.k2 += std::pow(estimated.k2(i) - truth.k2[s], 2) / n;
-		errors.direction +=
-			angle(std::abs(estimated.field.d1.col(i).dot(truth.d1.col(s)))) / n;
-		errors.normalBefore += std::pow(
-			angle(estimated.prepared.cloud.normals.col(i).dot(truth.normals.col(s))), 2) / n;
-		errors.normalAfter += std::pow(
-			angle(estimated.field.correctedNormals.col(i).dot(truth.normals.col(s))), 2) / n;
+		errors.direction += angle(std::abs(estimated.field.d1.col(i).dot(truth.d1.col(s)))) / n;
+		errors.normalBefore +=
+			std::pow(angle(estimated.prepared.cloud.normals.col(i).dot(truth.normals.col(s))), 2) /
+			n;
+		errors.normalAfter +=
+			std::pow(angle(estimated.field.correctedNormals.col(i).dot(truth.normals.col(s))), 2) /
+			n;
 	}
 	errors.k1           = std::sqrt(errors.k1);
 	errors.k2           = std::sqrt(errors.k2);

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "robust_curvature.h"
 #include "analytic_surfaces.h"
+#include "robust_curvature.h"
 
 namespace curvature_lines::test {
 

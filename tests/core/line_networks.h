@@ -94,8 +94,8 @@ torusNetwork(int meridians, int parallels, int segments, double noise, std::uint
 	NetworkBuilder  builder(normalOf("torus"), noise, seed);
 	samples::Random random(seed, 3);
 	const auto      torus = [](double u, double v) {
-		const double rho = 1.0 + 0.4 * std::cos(v);
-		return Eigen::Vector3d(rho * std::cos(u), rho * std::sin(u), 0.4 * std::sin(v));
+        const double rho = 1.0 + 0.4 * std::cos(v);
+        return Eigen::Vector3d(rho * std::cos(u), rho * std::sin(u), 0.4 * std::sin(v));
 	};
 	for (int i = 0; i < meridians; ++i) {
 		const double u = 2 * Pi * (i + random.uniform(0.0, 0.3)) / meridians;
@@ -138,8 +138,9 @@ inline Index crossingsWithinFamilies(const LineNetwork& lines)
 			segments.push_back({last, first, lines.family[l]});
 	}
 	const auto parted = [&](const Segment& a, const Segment& b, const Eigen::Vector3d& normal) {
-		const Eigen::Vector3d start = lines.vertices.col(a.from), along = lines.vertices.col(a.to) - start;
-		const auto            side  = [&](Index v) {
+		const Eigen::Vector3d start = lines.vertices.col(a.from),
+							  along = lines.vertices.col(a.to) - start;
+		const auto side             = [&](Index v) {
             return along.cross(lines.vertices.col(v) - start).dot(normal);
 		};
 		return side(b.from) * side(b.to) < 0.0;
@@ -147,14 +148,15 @@ inline Index crossingsWithinFamilies(const LineNetwork& lines)
 	Index count = 0;
 	for (std::size_t s = 0; s < segments.size(); ++s)
 		for (std::size_t t = s + 1; t < segments.size(); ++t) {
-			const Segment&        a = segments[s];
-			const Segment&        b = segments[t];
+			const Segment&        a      = segments[s];
+			const Segment&        b      = segments[t];
 			const Eigen::Vector3d normal = lines.normals.col(a.from);
-			const double          reach  = (lines.vertices.col(a.to) - lines.vertices.col(a.from)).norm() +
-								 (lines.vertices.col(b.to) - lines.vertices.col(b.from)).norm();
+			const double reach = (lines.vertices.col(a.to) - lines.vertices.col(a.from)).norm() +
+			                     (lines.vertices.col(b.to) - lines.vertices.col(b.from)).norm();
 			count += a.family == b.family && a.from != b.to && a.to != b.from &&
-					 (lines.vertices.col(a.from) - lines.vertices.col(b.from)).norm() < reach &&
-					 normal.dot(lines.normals.col(b.from)) > 0.5 && parted(a, b, normal) && parted(b, a, normal);
+			         (lines.vertices.col(a.from) - lines.vertices.col(b.from)).norm() < reach &&
+			         normal.dot(lines.normals.col(b.from)) > 0.5 && parted(a, b, normal) &&
+			         parted(b, a, normal);
 		}
 	return count;
 }

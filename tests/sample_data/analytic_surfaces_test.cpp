@@ -43,7 +43,11 @@ double chiSquare(const std::vector<int>& counts, const std::vector<double>& shar
 
 // Area of the patch between two values of the second parameter, by midpoint sums of |P_u x P_v|.
 double stripArea(
-	const std::function<Vector3d(double, double)>& at, double uFrom, double uTo, double vFrom, double vTo)
+	const std::function<Vector3d(double, double)>& at,
+	double                                         uFrom,
+	double                                         uTo,
+	double                                         vFrom,
+	double                                         vTo)
 {
 	constexpr int    steps = 200;
 	constexpr double h     = 1e-5;
@@ -68,7 +72,10 @@ void expectAreaUniform(
 	const std::string&                             name,
 	const std::function<double(const Vector3d&)>&  coordinate,
 	const std::function<Vector3d(double, double)>& at,
-	double uFrom, double uTo, double vFrom, double vTo)
+	double                                         uFrom,
+	double                                         uTo,
+	double                                         vFrom,
+	double                                         vTo)
 {
 	std::vector<int>    counts(bins, 0);
 	std::vector<double> areas;
@@ -180,12 +187,12 @@ TEST_P(EverySurface, CurvaturesAreThoseOfTheProjection)
 TEST_P(EverySurface, NoiseHasTheStandardDeviationAskedFor)
 {
 	SampleRequest request;
-	request.surface     = GetParam();
-	request.points      = 4000;
-	request.noise       = 0.005;
-	request.seed        = 7;
-	const SampleCloud c = generate(request);
-	double            sum = 0.0;
+	request.surface         = GetParam();
+	request.points          = 4000;
+	request.noise           = 0.005;
+	request.seed            = 7;
+	const SampleCloud c     = generate(request);
+	double            sum   = 0.0;
 	int               inner = 0;
 	for (Eigen::Index i = 0; i < c.k1.size(); ++i) {
 		if (!roomy(c.footPoints.col(i), 0.1))
@@ -195,15 +202,17 @@ TEST_P(EverySurface, NoiseHasTheStandardDeviationAskedFor)
 	}
 	// Standard error of an estimated standard deviation: 1 / sqrt(2 n).
 	EXPECT_NEAR(
-		std::sqrt(sum / inner) / (request.noise * shape().diagonal()), 1.0, 4.0 / std::sqrt(2.0 * inner));
+		std::sqrt(sum / inner) / (request.noise * shape().diagonal()),
+		1.0,
+		4.0 / std::sqrt(2.0 * inner));
 }
 
 TEST_P(EverySurface, GridIsEven)
 {
 	SampleRequest request;
-	request.surface     = GetParam();
-	request.points      = 1000;
-	request.regular     = true;
+	request.surface   = GetParam();
+	request.points    = 1000;
+	request.regular   = true;
 	const Matrix3Xd p = generate(request).positions;
 	EXPECT_NEAR(static_cast<double>(p.cols()), 1000.0, 60.0);
 	Eigen::VectorXd nearest(p.cols());
@@ -234,10 +243,10 @@ TEST_P(EverySurface, OutliersAreCountedLabelledAndLeaveTheInliersAlone)
 	EXPECT_EQ((mixed.label.array() == FarOutlier).count(), 50);
 	EXPECT_EQ((mixed.label.array() == NearOutlier).count(), 50);
 
-	const double              unit = request.noise * shape().diagonal();
-	const Eigen::AlignedBox3d box  = shape().boundingBox();
-	const Vector3d reach = 0.6 * box.sizes().cwiseMax(0.2 * shape().diagonal());
-	int            off   = 0;
+	const double              unit  = request.noise * shape().diagonal();
+	const Eigen::AlignedBox3d box   = shape().boundingBox();
+	const Vector3d            reach = 0.6 * box.sizes().cwiseMax(0.2 * shape().diagonal());
+	int                       off   = 0;
 	for (Eigen::Index i = 0; i < mixed.label.size(); ++i) {
 		const Vector3d p        = mixed.positions.col(i);
 		const double   distance = (p - mixed.footPoints.col(i)).norm();
@@ -263,10 +272,9 @@ TEST_P(EverySurface, SeedsDecide)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-	AnalyticSurfaces,
-	EverySurface,
-	testing::ValuesIn(surfaceNames()),
-	[](const auto& info) { return info.param; });
+	AnalyticSurfaces, EverySurface, testing::ValuesIn(surfaceNames()), [](const auto& info) {
+		return info.param;
+	});
 
 TEST(AnalyticSurfaces, RandomPointsAreAreaUniform)
 {
@@ -277,7 +285,10 @@ TEST(AnalyticSurfaces, RandomPointsAreAreaUniform)
 			const double w = 1.0 + 0.4 * std::cos(v);
 			return Vector3d(w * std::cos(u), w * std::sin(u), 0.4 * std::sin(v));
 		},
-		0.0, 2.0 * pi, -pi, pi);
+		0.0,
+		2.0 * pi,
+		-pi,
+		pi);
 	expectAreaUniform(
 		"helicoid",
 		[](const Vector3d& p) {
@@ -285,7 +296,10 @@ TEST(AnalyticSurfaces, RandomPointsAreAreaUniform)
 			return p.x() * std::cos(v) + p.y() * std::sin(v);
 		},
 		[](double v, double u) { return Vector3d(u * std::cos(v), u * std::sin(v), 0.5 * v); },
-		-pi, pi, -1.0, 1.0);
+		-pi,
+		pi,
+		-1.0,
+		1.0);
 	expectAreaUniform(
 		"ellipsoid",
 		[](const Vector3d& p) { return std::acos(std::clamp(p.z() / 0.5, -1.0, 1.0)); },
@@ -293,7 +307,10 @@ TEST(AnalyticSurfaces, RandomPointsAreAreaUniform)
 			return Vector3d(
 				std::sin(v) * std::cos(u), 0.7 * std::sin(v) * std::sin(u), 0.5 * std::cos(v));
 		},
-		0.0, 2.0 * pi, 0.0, pi);
+		0.0,
+		2.0 * pi,
+		0.0,
+		pi);
 }
 
 // Gauss and Bonnet, with the area known: the mean of k1 k2 over area-uniform samples times the area is
@@ -313,11 +330,11 @@ TEST(AnalyticSurfaces, TotalCurvatureIsTheEulerCharacteristic)
 // 2 h area (1 + h^2 / 3 times the mean of k1 k2).
 TEST(AnalyticSurfaces, TotalCurvatureOfTheDoubleTorusIsThatOfGenusTwo)
 {
-	constexpr double          h       = 0.03;
-	constexpr int             points  = 60000;
-	const AnalyticSurface&    shape   = surface("double_torus");
-	const Eigen::AlignedBox3d box     = shape.boundingBox();
-	const Vector3d            margin  = Vector3d::Constant(h);
+	constexpr double          h      = 0.03;
+	constexpr int             points = 60000;
+	const AnalyticSurface&    shape  = surface("double_torus");
+	const Eigen::AlignedBox3d box    = shape.boundingBox();
+	const Vector3d            margin = Vector3d::Constant(h);
 	const Eigen::AlignedBox3d around(box.min() - margin, box.max() + margin);
 	Random                    random(3, 0);
 	int                       near = 0;
@@ -339,8 +356,11 @@ TEST(AnalyticSurfaces, TheDoubleTorusIsSampledSymmetrically)
 	std::vector<int>  counts(8, 0);
 	const SampleCloud c = cleanCloud("double_torus", 40000);
 	for (Eigen::Index i = 0; i < c.positions.cols(); ++i)
-		++counts[(c.positions(0, i) > 0.0) + 2 * (c.positions(1, i) > 0.0) + 4 * (c.positions(2, i) > 0.0)];
-	EXPECT_LT(chiSquare(counts, std::vector<double>(8, 1.0)), 24.3); // 7 degrees of freedom, probability 0.001
+		++counts
+			[(c.positions(0, i) > 0.0) + 2 * (c.positions(1, i) > 0.0) +
+		     4 * (c.positions(2, i) > 0.0)];
+	// 7 degrees of freedom, probability 0.001
+	EXPECT_LT(chiSquare(counts, std::vector<double>(8, 1.0)), 24.3);
 }
 
 TEST(AnalyticSurfaces, RegularCloudsOfThePapersHaveTheirSizes)

@@ -41,8 +41,11 @@ private:
 // Sees every evaluation, so that the best point survives whatever the line search does afterwards.
 class Guard {
 public:
-	Guard(const Objective& objective, const Eigen::VectorXd& start, Index limit, const Progress& progress) :
-			m_objective(objective), m_limit(limit), m_progress(progress)
+	Guard(
+		const Objective&       objective,
+		const Eigen::VectorXd& start,
+		Index                  limit,
+		const Progress& progress) : m_objective(objective), m_limit(limit), m_progress(progress)
 	{
 		best.x     = start;
 		best.value = m_objective(start, m_gradient);
@@ -184,7 +187,8 @@ public:
 
 	bool should_continue_search(const DlibVector&, double value, const DlibVector& gradient)
 	{
-		const bool settled = m_started && std::abs(m_last - value) <= relativeGain * std::abs(value);
+		const bool settled =
+			m_started && std::abs(m_last - value) <= relativeGain * std::abs(value);
 		m_started = true;
 		m_last    = value;
 		if (settled || m_guard.iterationsLeft() <= 0 || dlib::length_squared(gradient) == 0.0)
@@ -212,7 +216,8 @@ Minimum minimizeLbfgs(
 	Guard guard(objective, start, maxIterations, progress);
 	return restarted(guard, [&](Eigen::VectorXd& x, double& value) {
 		parameters.max_iterations = guard.iterationsLeft();
-		LBFGSpp::LBFGSSolver<double, Counting<LBFGSpp::LineSearchBacktracking>::Step> solver(parameters);
+		LBFGSpp::LBFGSSolver<double, Counting<LBFGSpp::LineSearchBacktracking>::Step> solver(
+			parameters);
 		solver.minimize(guard, x, value);
 	});
 }
@@ -228,7 +233,8 @@ Minimum minimizeLbfgsB(
 	Guard guard(objective, start, maxIterations, progress);
 	return restarted(guard, [&](Eigen::VectorXd& x, double& value) {
 		parameters.max_iterations = guard.iterationsLeft();
-		LBFGSpp::LBFGSBSolver<double, Counting<LBFGSpp::LineSearchMoreThuente>::Step> solver(parameters);
+		LBFGSpp::LBFGSBSolver<double, Counting<LBFGSpp::LineSearchMoreThuente>::Step> solver(
+			parameters);
 		solver.minimize(guard, x, value, box.lower, box.upper);
 	});
 }

@@ -18,8 +18,8 @@ struct Box {
 
 struct Minimum {
 	Eigen::VectorXd x;
-	double value      = 0.0; // never above the value at the start
-	Index  iterations = 0;
+	double          value      = 0.0; // never above the value at the start
+	Index           iterations = 0;
 };
 
 // `start` lies in the box, which must be finite for Polak-Ribiere. All stop after maxIterations,

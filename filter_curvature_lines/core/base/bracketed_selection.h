@@ -24,8 +24,8 @@ struct ValueBracket {
 
 // Of the valueAt(k) >= 0, k < n; those inside are left in `values`.
 template<class ValueAt>
-ValueBracket bracketValues(
-	int n, const ValueAt& valueAt, double low, double high, std::vector<double>& values)
+ValueBracket
+bracketValues(int n, const ValueAt& valueAt, double low, double high, std::vector<double>& values)
 {
 	std::size_t counted = 0, below = 0, inside = 0;
 	values.resize(std::max<std::size_t>(values.size(), n));
@@ -46,8 +46,8 @@ inline void narrow(ValueBracket& bracket, std::size_t rank, std::vector<double>&
 	const double  perValue = double(slices) / (bracket.high - bracket.low);
 	if (!(perValue < std::numeric_limits<double>::infinity()))
 		return;
-	const auto    sliceOf  = [&](double value) {
-        return std::min(int((value - bracket.low) * perValue), slices - 1);
+	const auto sliceOf = [&](double value) {
+		return std::min(int((value - bracket.low) * perValue), slices - 1);
 	};
 	std::size_t held[slices] = {};
 	for (std::size_t k = 0; k < bracket.inside; ++k)
@@ -79,21 +79,23 @@ Selected selectNear(
 	double guess, int n, const ValueAt& valueAt, const RankOf& rankOf, std::vector<double>& scratch)
 {
 	constexpr double      spread = 1.6, away = 4.0;
-	constexpr int         moves  = 2;
-	constexpr std::size_t few    = 32;
-	ValueBracket          bracket = bracketValues(n, valueAt, guess / spread, guess * spread, scratch);
+	constexpr int         moves = 2;
+	constexpr std::size_t few   = 32;
+	ValueBracket bracket = bracketValues(n, valueAt, guess / spread, guess * spread, scratch);
 	if (bracket.counted == 0)
 		return {};
 	const std::size_t rank = rankOf(bracket.counted);
 	for (int move = 0; move < moves && !bracket.holds(rank); ++move)
-		bracket = rank < bracket.below ?
-					  bracketValues(n, valueAt, bracket.low / away, bracket.low * spread, scratch) :
-					  bracketValues(n, valueAt, bracket.high / spread, bracket.high * away, scratch);
+		bracket =
+			rank < bracket.below
+				? bracketValues(n, valueAt, bracket.low / away, bracket.low * spread, scratch)
+				: bracketValues(n, valueAt, bracket.high / spread, bracket.high * away, scratch);
 	if (!bracket.holds(rank))
 		bracket = bracketValues(n, valueAt, 0.0, std::numeric_limits<double>::infinity(), scratch);
 	else if (bracket.inside > few)
 		narrow(bracket, rank, scratch);
-	const auto end = scratch.begin() + bracket.inside, at = scratch.begin() + (rank - bracket.below);
+	const auto end = scratch.begin() + bracket.inside,
+			   at  = scratch.begin() + (rank - bracket.below);
 	std::nth_element(scratch.begin(), at, end);
 	return {*at, at + 1 < end ? *std::min_element(at + 1, end) : *at};
 }
@@ -103,7 +105,9 @@ template<class ValueAt>
 double quantileNear(
 	double guess, int n, const ValueAt& valueAt, double share, std::vector<double>& scratch)
 {
-	const auto rankOf = [share](std::size_t count) { return static_cast<std::size_t>(share * double(count)); };
+	const auto rankOf = [share](std::size_t count) {
+		return static_cast<std::size_t>(share * double(count));
+	};
 	return selectNear(guess, n, valueAt, rankOf, scratch).value;
 }
 

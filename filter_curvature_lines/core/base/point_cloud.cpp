@@ -38,9 +38,7 @@ void setUnitFrame(const Eigen::Matrix3Xd& positions, PreparedCloud& prepared)
 
 // Duplicates are judged after scaling, because points that differ far from the origin may coincide there.
 void mergeDuplicates(
-	const Eigen::Matrix3Xd& unitPositions,
-	const Eigen::Matrix3Xd& normals,
-	PreparedCloud&          prepared)
+	const Eigen::Matrix3Xd& unitPositions, const Eigen::Matrix3Xd& normals, PreparedCloud& prepared)
 {
 	const Index        usable = static_cast<Index>(prepared.source.size());
 	std::vector<Index> order(usable);
@@ -56,8 +54,7 @@ void mergeDuplicates(
 
 	std::vector<Index> first(usable); // the first duplicate of each usable point
 	for (Index i = 0; i < usable; ++i) {
-		const bool same =
-			i > 0 && unitPositions.col(order[i]) == unitPositions.col(order[i - 1]);
+		const bool same = i > 0 && unitPositions.col(order[i]) == unitPositions.col(order[i - 1]);
 		first[order[i]] = same ? first[order[i - 1]] : order[i];
 	}
 
@@ -70,7 +67,7 @@ void mergeDuplicates(
 			keptIndex[i] = kept++;
 			source.push_back(prepared.source[i]);
 		}
-		keptIndex[i] = keptIndex[first[i]];
+		keptIndex[i]                                = keptIndex[first[i]];
 		prepared.representative[prepared.source[i]] = keptIndex[i];
 		normalSum.col(keptIndex[i]) += normals.col(prepared.source[i]).stableNormalized();
 	}
@@ -125,8 +122,8 @@ NeighborLists NeighborLists::fromRows(const std::vector<std::vector<Index>>& row
 	return lists;
 }
 
-PreparedCloud prepareCloud(
-	const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& normals, Index minPoints)
+PreparedCloud
+prepareCloud(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& normals, Index minPoints)
 {
 	if (positions.cols() != normals.cols())
 		throw InputError("The point cloud has no normals; compute normals for point sets first.");

@@ -22,7 +22,8 @@ public:
 
 struct PointCloud {
 	Eigen::Matrix3Xd positions; // 3 x N
-	Eigen::Matrix3Xd normals;   // 3 x N, unit, outward (see curvature conventions in robust_curvature.h)
+	// 3 x N, unit, outward (see curvature conventions in robust_curvature.h)
+	Eigen::Matrix3Xd normals;
 
 	Index size() const { return static_cast<Index>(positions.cols()); }
 };
@@ -34,15 +35,15 @@ struct NeighborLists {
 		const Index* last  = nullptr;
 		const Index* begin() const { return first; }
 		const Index* end() const { return last; }
-		Index        size() const { return static_cast<Index>(last - first); }
-		Index        operator[](Index k) const { return first[k]; }
+		Index size() const { return static_cast<Index>(last - first); }
+		Index operator[](Index k) const { return first[k]; }
 	};
 
 	std::vector<Index> offsets = {0};
 	std::vector<Index> indices;
 
 	Index size() const { return static_cast<Index>(offsets.size()) - 1; }
-	Row   operator[](Index i) const
+	Row operator[](Index i) const
 	{
 		return {indices.data() + offsets[i], indices.data() + offsets[i + 1]};
 	}
@@ -51,25 +52,26 @@ struct NeighborLists {
 };
 
 enum class PointStatus : std::uint8_t {
-	Ok               = 0,
-	Boundary         = 1, // two or more contiguous empty slices; estimated with less confidence
-	TooFewNeighbors  = 2, // no estimate: curvature 0, arbitrary tangent directions
-	Umbilic          = 3, // k1 == k2 within error: directions replaced or meaningless
-	Isolated         = 4, // four or more empty slices; rejected as an outlier
-	Invalid          = 5, // non-finite coordinates or no usable normal; takes no part
+	Ok              = 0,
+	Boundary        = 1, // two or more contiguous empty slices; estimated with less confidence
+	TooFewNeighbors = 2, // no estimate: curvature 0, arbitrary tangent directions
+	Umbilic         = 3, // k1 == k2 within error: directions replaced or meaningless
+	Isolated        = 4, // four or more empty slices; rejected as an outlier
+	Invalid         = 5, // non-finite coordinates or no usable normal; takes no part
 };
 
 // What prepareCloud() made of raw input. Stages work in the unit frame: centred on the bounding box,
 // its diagonal scaled to 1, so no tolerance depends on the user's units or distance from the origin.
 struct PreparedCloud {
-	PointCloud      cloud;           // n <= N distinct finite points, unit normals, unit frame
-	Eigen::Vector3d center;          // model units
-	double          diagonal = 1.0;  // bounding-box diagonal in model units
-	std::vector<Index> source;       // n: raw index of each kept point (the first of its duplicates)
-	std::vector<Index> representative; // N: kept index of each raw point, -1 if dropped
-	Index nonFinite   = 0;           // dropped: NaN or infinite coordinates
-	Index zeroNormals = 0;           // dropped: zero or non-finite normal
-	Index duplicates  = 0;           // merged into an earlier point at the same position
+	PointCloud      cloud;          // n <= N distinct finite points, unit normals, unit frame
+	Eigen::Vector3d center;         // model units
+	double          diagonal = 1.0; // bounding-box diagonal in model units
+	// n: raw index of each kept point (the first of its duplicates)
+	std::vector<Index> source;
+	std::vector<Index> representative;  // N: kept index of each raw point, -1 if dropped
+	Index              nonFinite   = 0; // dropped: NaN or infinite coordinates
+	Index              zeroNormals = 0; // dropped: zero or non-finite normal
+	Index              duplicates  = 0; // merged into an earlier point at the same position
 
 	Eigen::Vector3d toUnit(const Eigen::Vector3d& p) const { return (p - center) / diagonal; }
 	Eigen::Vector3d toModel(const Eigen::Vector3d& p) const { return p * diagonal + center; }

@@ -97,7 +97,9 @@ void parallelTasks(
 	std::mutex                       mutex;
 	std::condition_variable          oneFinished;
 
-	const auto report = [&] { progress.report(std::accumulate(reached.begin(), reached.end(), 0.0) / n); };
+	const auto report = [&] {
+		progress.report(std::accumulate(reached.begin(), reached.end(), 0.0) / n);
+	};
 	const auto run = [&](Index i) {
 		const Progress own([&, i](double fraction, const char*) {
 			reached[i] = fraction;

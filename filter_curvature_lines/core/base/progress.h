@@ -28,7 +28,7 @@ public:
 	}
 
 	// Throws Cancelled when the host says so.
-	void     report(double fraction) const;
+	void report(double fraction) const;
 	Progress sub(double from, double to, const char* what) const;
 
 private:

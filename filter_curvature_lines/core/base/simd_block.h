@@ -10,7 +10,8 @@ constexpr int blockSize = 4;
 // for, so that every machine computes the same numbers.
 typedef double Block __attribute__((vector_size(blockSize * sizeof(double))));
 // In memory that is aligned for double only.
-typedef double UnalignedBlock __attribute__((vector_size(blockSize * sizeof(double)), aligned(8), may_alias));
+typedef double UnalignedBlock
+	__attribute__((vector_size(blockSize * sizeof(double)), aligned(8), may_alias));
 
 inline const UnalignedBlock& blockAt(const double* p)
 {
@@ -37,7 +38,7 @@ inline void toExpOfNegative(Block& x)
 	e             = t * e + 1.0;
 	for (int doubling = 0; doubling < 5; ++doubling)
 		e *= e;
-	x = x < 16.0 ? e : Block {};
+	x = x < 16.0 ? e : Block{};
 }
 
 // A function compiled twice; the program takes what the processor has. Elsewhere the portable one alone.

@@ -50,10 +50,9 @@ DenoisingResult denoise(
 	const DenoisingOptions& options,
 	const Progress&         progress)
 {
-	DenoisingResult result =
-		options.method == DenoisingOptions::Method::Paper ?
-			denoiseAsPublished(cloud, correction, options.paper, progress) :
-			denoiseByProjection(cloud, options.robust, progress);
+	DenoisingResult result = options.method == DenoisingOptions::Method::Paper
+	                             ? denoiseAsPublished(cloud, correction, options.paper, progress)
+	                             : denoiseByProjection(cloud, options.robust, progress);
 	if (cloud.size() > 0) {
 		const Eigen::VectorXd moves = (result.positions - cloud.positions).colwise().norm();
 		result.rmsMove              = std::sqrt(moves.squaredNorm() / double(cloud.size()));

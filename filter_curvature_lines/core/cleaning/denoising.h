@@ -16,7 +16,7 @@ struct DenoisingOptions {
 };
 
 struct DenoisingResult {
-	Eigen::Matrix3Xd positions, normals; // 3 x N
+	Eigen::Matrix3Xd positions, normals;           // 3 x N
 	double           rmsMove = 0.0, maxMove = 0.0; // lengths
 	// Robust: what was used.
 	double noise  = 0.0; // standard deviation of the positions, a length

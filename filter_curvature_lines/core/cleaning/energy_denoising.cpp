@@ -15,15 +15,16 @@ namespace {
 
 constexpr Index  neighborCount = 6;    // K of A09 section 4.2
 constexpr double minSine       = 0.05; // thinner triangles have no stable normal
-constexpr Index  minParallel   = 8192; // points, below which waking threads costs more than they save
+// points, below which waking threads costs more than they save
+constexpr Index  minParallel   = 8192;
 constexpr double minCrossRatio = 1e-3; // a triangle that collapses later keeps a finite gradient
 
-NeighborLists nearestNeighbors(
-	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
+NeighborLists
+nearestNeighbors(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
 {
 	std::vector<std::vector<Index>> rows(cloud.size());
 	parallelFor(cloud.size(), progress, [&](Index i) {
-		rows[i] = search.nearest(cloud.positions.col(i), neighborCount + 1);
+		rows[i]         = search.nearest(cloud.positions.col(i), neighborCount + 1);
 		const auto self = std::find(rows[i].begin(), rows[i].end(), i);
 		rows[i].erase(self == rows[i].end() && !rows[i].empty() ? rows[i].end() - 1 : self);
 	});
@@ -73,13 +74,11 @@ Cost costOf(double e2, const EnergyDenoisingOptions& options)
 } // namespace
 
 DenoisingEnergy::DenoisingEnergy(
-	const PointCloud& start, const NeighborLists& neighbors, const EnergyDenoisingOptions& options) :
-		m_options(options),
-		m_normals(start.normals),
-		m_fans(neighbors),
-		m_minCross(start.size()),
-		m_uses(placesOf(neighbors, start.size())),
-		m_pulls(3, neighbors.indices.size()),
+	const PointCloud&             start,
+	const NeighborLists&          neighbors,
+	const EnergyDenoisingOptions& options) :
+		m_options(options), m_normals(start.normals), m_fans(neighbors), m_minCross(start.size()),
+		m_uses(placesOf(neighbors, start.size())), m_pulls(3, neighbors.indices.size()),
 		m_fanEnergies(start.size())
 {
 	// At 0 the rounded root has no slope to divide by.
@@ -128,12 +127,12 @@ double DenoisingEnergy::evaluateFan(Index i, const Eigen::VectorXd& x)
 			const Eigen::Vector3d nhat   = c * scale;
 			const Cost            cost   = costOf((n - s * nhat).squaredNorm(), m_options);
 			// d(e^2)/dc = -2 s (n - (n.nhat) nhat) / |c|; below the floor nhat is linear in c.
-			const Eigen::Vector3d turn = tiny ? Eigen::Vector3d(nhat - s * n) :
-												Eigen::Vector3d(-s * (n - n.dot(nhat) * nhat));
-			const Eigen::Vector3d g = (2.0 * cost.slope * scale) * turn;
+			const Eigen::Vector3d turn = tiny ? Eigen::Vector3d(nhat - s * n)
+			                                  : Eigen::Vector3d(-s * (n - n.dot(nhat) * nhat));
+			const Eigen::Vector3d g    = (2.0 * cost.slope * scale) * turn;
 			sum += cost.value;
-			pullA += b.cross(g);                     // dE/dq
-			m_pulls.col(first + k) += g.cross(a);    // dE/dr
+			pullA += b.cross(g);                  // dE/dq
+			m_pulls.col(first + k) += g.cross(a); // dE/dr
 		}
 		m_pulls.col(first + j) += pullA;
 	}
@@ -158,11 +157,11 @@ double DenoisingEnergy::operator()(const Eigen::VectorXd& x, Eigen::VectorXd& gr
 }
 
 EnergyDenoisingResult denoiseByEnergy(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
-	const EnergyDenoisingOptions&     options,
-	const Progress&             progress)
+	const PointCloud&             cloud,
+	const NeighborSearch&         search,
+	const MinimumNeighborhoods&   minimum,
+	const EnergyDenoisingOptions& options,
+	const Progress&               progress)
 {
 	EnergyDenoisingResult result;
 	result.positions = cloud.positions;
@@ -172,29 +171,29 @@ EnergyDenoisingResult denoiseByEnergy(
 	// The energy has no unit. In spacings its gradient is O(1), which is what line searches expect.
 	PointCloud scaled = cloud;
 	scaled.positions /= minimum.medianSpacing;
-	const bool nearest = options.neighbors == EnergyDenoisingOptions::Neighbors::Nearest;
+	const bool      nearest = options.neighbors == EnergyDenoisingOptions::Neighbors::Nearest;
 	DenoisingEnergy energy(
 		scaled,
-		nearest ? nearestNeighbors(cloud, search, progress.sub(0.0, 0.05, "Finding neighbors")) :
-				  minimum.neighbors,
+		nearest ? nearestNeighbors(cloud, search, progress.sub(0.0, 0.05, "Finding neighbors"))
+				: minimum.neighbors,
 		options);
 
 	const Eigen::VectorXd start =
 		Eigen::Map<const Eigen::VectorXd>(scaled.positions.data(), scaled.positions.size());
-	const Box       box {start.array() - options.maxMove, start.array() + options.maxMove};
+	const Box       box{start.array() - options.maxMove, start.array() + options.maxMove};
 	const Objective objective = [&](const auto& x, auto& gradient) { return energy(x, gradient); };
-	const auto      minimize  = options.optimizer == EnergyDenoisingOptions::Optimizer::LBFGSB ?
-									minimizeLbfgsB :
-									minimizePolakRibiere;
+	const auto      minimize  = options.optimizer == EnergyDenoisingOptions::Optimizer::LBFGSB
+	                                ? minimizeLbfgsB
+	                                : minimizePolakRibiere;
 	Eigen::VectorXd gradient;
 	result.initialEnergy = energy(start, gradient);
-	const Minimum best   = minimize(
-        objective, start, box, options.iterations, progress.sub(0.05, 1.0, "Denoising"));
+	const Minimum best =
+		minimize(objective, start, box, options.iterations, progress.sub(0.05, 1.0, "Denoising"));
 
 	result.iterations  = best.iterations;
 	result.finalEnergy = best.value;
-	result.positions   = minimum.medianSpacing
-					   * Eigen::Map<const Eigen::Matrix3Xd>(best.x.data(), 3, cloud.size());
+	result.positions =
+		minimum.medianSpacing * Eigen::Map<const Eigen::Matrix3Xd>(best.x.data(), 3, cloud.size());
 	return result;
 }
 

@@ -11,13 +11,14 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  smallVoter      = 30;  // points
-constexpr Index  fewestInGroup   = smallVoter; // smaller ones would have the majority of it
-constexpr double linkLength      = 2.0; // spacings
-constexpr double spacingOfCrowd  = 0.72; // over the distance to the 6th neighbour, of even points
-constexpr double oneSurface      = 1.5; // noise units of deviation
-constexpr double acceptedShare   = 0.25; // of the points of a voter, of those that join the group to the rest
-constexpr int    mostPasses      = 30;
+constexpr Index  smallVoter     = 30;         // points
+constexpr Index  fewestInGroup  = smallVoter; // smaller ones would have the majority of it
+constexpr double linkLength     = 2.0;        // spacings
+constexpr double spacingOfCrowd = 0.72; // over the distance to the 6th neighbour, of even points
+constexpr double oneSurface     = 1.5;  // noise units of deviation
+// of the points of a voter, of those that join the group to the rest
+constexpr double acceptedShare = 0.25;
+constexpr int    mostPasses    = 30;
 
 class Appeal {
 public:
@@ -27,10 +28,7 @@ public:
 		double                      noise,
 		double                      sensitivity,
 		std::vector<char>&          rejected) :
-			m_cloud(cloud),
-			m_verdicts(verdicts),
-			m_noise(noise),
-			m_sensitivity(sensitivity),
+			m_cloud(cloud), m_verdicts(verdicts), m_noise(noise), m_sensitivity(sensitivity),
 			m_rejected(rejected)
 	{
 	}

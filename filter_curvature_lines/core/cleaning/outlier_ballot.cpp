@@ -17,9 +17,10 @@ constexpr double bentWeight       = 1e-4;
 constexpr double rimWeight        = 0.1;
 constexpr double acceptance       = 0.05; // a point is good if this share of its votes says so,
 constexpr int    lonelyAcceptance = 3;    // and for a point by itself this number of votes
-constexpr double lonelyDistance   = 3.0;  // spacings to the 6th neighbour; in a right-angled corner it is at 2.8
-constexpr double coherence        = 1.5;  // noise units within which votes speak of one surface
-constexpr int    meanShifts       = 4;
+// spacings to the 6th neighbour; in a right-angled corner it is at 2.8
+constexpr double lonelyDistance = 3.0;
+constexpr double coherence      = 1.5; // noise units within which votes speak of one surface
+constexpr int    meanShifts     = 4;
 
 // The surface accepted by a small share of the votes, which at a corner is all that know the face, and from
 // there to the mean of the votes that agree, because the least of many distances is too optimistic.
@@ -52,8 +53,7 @@ Vector3d surfaceOf(const Ballot& ballot, bool lonely)
 
 } // namespace
 
-void addVote(
-	Ballot& ballot, const OutlierVoter& voter, const Vector3d& centre, const Vector3d& p)
+void addVote(Ballot& ballot, const OutlierVoter& voter, const Vector3d& centre, const Vector3d& p)
 {
 	const SurfacePatch::Local   local   = voter.surface.toLocal(p);
 	const OutlierVoter::Support support = voter.support(local);

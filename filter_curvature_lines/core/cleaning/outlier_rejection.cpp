@@ -8,8 +8,8 @@ namespace curvature_lines {
 
 namespace {
 
-OutlierResult
-rejectByPublishedVotes(const PointCloud& cloud, const OutlierOptions& options, const Progress& progress)
+OutlierResult rejectByPublishedVotes(
+	const PointCloud& cloud, const OutlierOptions& options, const Progress& progress)
 {
 	const NeighborSearch       search(cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(
@@ -50,10 +50,10 @@ OutlierResult voteOutliers(const CurvatureField& field, double voteThreshold)
 OutlierResult
 rejectOutliers(const PointCloud& cloud, const OutlierOptions& options, const Progress& progress)
 {
-	OutlierResult result = options.mode == OutlierOptions::Mode::Paper ?
-							   rejectByPublishedVotes(cloud, options, progress) :
-							   rejectByRobustVotes(
-								   cloud.positions, options.sensitivity, options.rounds, progress);
+	OutlierResult result =
+		options.mode == OutlierOptions::Mode::Paper
+			? rejectByPublishedVotes(cloud, options, progress)
+			: rejectByRobustVotes(cloud.positions, options.sensitivity, options.rounds, progress);
 	progress.report(1.0);
 	return result;
 }

@@ -22,13 +22,9 @@ struct OutlierOptions {
 // The published vote for one given curvature field, one round: a point is flagged when more than
 // voteThreshold of its votes are against, or when it is Isolated. W_a[b] > 0 and W_b[a] = 0 is b's vote
 // against a; both > 0 is a vote for a (R07 prints the opposite by a copy error).
-OutlierResult voteOutliers(
-	const CurvatureField& field,
-	double                voteThreshold);
+OutlierResult voteOutliers(const CurvatureField& field, double voteThreshold);
 
 OutlierResult rejectOutliers(
-	const PointCloud&     cloud,
-	const OutlierOptions& options  = {},
-	const Progress&       progress = {});
+	const PointCloud& cloud, const OutlierOptions& options = {}, const Progress& progress = {});
 
 } // namespace curvature_lines

@@ -22,11 +22,13 @@ constexpr double denserThanCentre = 0.5;
 constexpr Index  nearCentre       = 9;
 constexpr double fewestKept       = 0.8; // of the points asked for, or a larger ball is searched
 constexpr double largestBall      = 4.0; // times the points asked for
-constexpr double minNoise         = 0.06; // of the spacing: what a quadric misses on an exact surface
-constexpr double onSurface        = 3.0;  // deviations
-constexpr double minMajority      = 0.35;
-constexpr double insideDistance2  = 4.5; // squared Mahalanobis distance; 4 is the rim of a uniform disk
-constexpr double rimDistance2     = 9.0; // 7.4 is the corner of a quarter of a disk
+// of the spacing: what a quadric misses on an exact surface
+constexpr double minNoise    = 0.06;
+constexpr double onSurface   = 3.0; // deviations
+constexpr double minMajority = 0.35;
+// squared Mahalanobis distance; 4 is the rim of a uniform disk
+constexpr double insideDistance2 = 4.5;
+constexpr double rimDistance2    = 9.0; // 7.4 is the corner of a quarter of a disk
 // What a robust quadric of n points takes of the deviation, times n, and the variance its prediction adds,
 // times n over that of a point: both found by fits to noisy planes.
 constexpr double lostDeviation      = 9.5;
@@ -54,11 +56,10 @@ double evenNeighbors(
 		even.clear();
 		if (nearest.empty())
 			return 0.0;
-		const double radius =
-			(cloud.positions.col(cloud.active[nearest.back()]) - centre).norm();
-		const double usual = std::max(
-			denseness * radius * std::sqrt(double(crowdSize) / double(nearest.size())),
-			denserThanCentre * crowdingAround(cloud, nearest));
+		const double radius = (cloud.positions.col(cloud.active[nearest.back()]) - centre).norm();
+		const double usual  = std::max(
+            denseness * radius * std::sqrt(double(crowdSize) / double(nearest.size())),
+            denserThanCentre * crowdingAround(cloud, nearest));
 		for (const Index k : nearest) {
 			const Index  i     = cloud.active[k];
 			const double ratio = cloud.crowding[i] / usual;
@@ -68,7 +69,7 @@ double evenNeighbors(
 		if (double(even.size()) >= fewestKept * count || static_cast<Index>(nearest.size()) < asked)
 			break;
 		const double growth = double(asked) / std::max<double>(1.0, even.size());
-		asked = static_cast<Index>(count * std::min(growth, largestBall));
+		asked               = static_cast<Index>(count * std::min(growth, largestBall));
 	}
 	if (static_cast<Index>(even.size()) > count)
 		even.resize(count);
@@ -111,9 +112,9 @@ OutlierVoter::Support OutlierVoter::support(const SurfacePatch::Local& p) const
 {
 	const Vector2d offset(p.x - supportCentre.x(), p.y - supportCentre.y());
 	const double   distance2 = offset.dot(supportShape * offset);
-	return distance2 <= insideDistance2 ? Support::Inside :
-		   distance2 <= rimDistance2	? Support::Rim :
-										  Support::Outside;
+	return distance2 <= insideDistance2 ? Support::Inside
+	       : distance2 <= rimDistance2  ? Support::Rim
+	                                    : Support::Outside;
 }
 
 void fitVoter(OutlierVoter& voter, const VoterCloud& cloud)
@@ -122,21 +123,20 @@ void fitVoter(OutlierVoter& voter, const VoterCloud& cloud)
 	thread_local Matrix3Xd          points;
 	thread_local std::vector<Index> even;
 	const Vector3d                  centre = cloud.positions.col(voter.centre);
-	const double radius = evenNeighbors(centre, voter.neighbors, cloud, even);
+	const double                    radius = evenNeighbors(centre, voter.neighbors, cloud, even);
 	voter.ball.clear();
 	points.resize(3, even.size());
 	for (std::size_t k = 0; k < even.size(); ++k)
 		points.col(k) = cloud.positions.col(even[k]);
 	const double spacing = radius * std::sqrt(EIGEN_PI / std::max<double>(1.0, even.size()));
 	const auto   seed    = static_cast<std::uint32_t>(cloud.rank[voter.centre]);
-	if (!fitPatchRobustly(
-			voter.surface, points, radius, minNoise * spacing, seed, scratch))
+	if (!fitPatchRobustly(voter.surface, points, radius, minNoise * spacing, seed, scratch))
 		return;
 	Matrix2d     covariance;
 	const double reach = onSurface * voter.surface.scale;
 	const int    count = measureSupport(scratch, reach, voter.supportCentre, covariance);
 	const double area  = 4.0 * EIGEN_PI * radius * radius *
-						std::sqrt(std::max(0.0, covariance.determinant())); // of an even ellipse
+	                    std::sqrt(std::max(0.0, covariance.determinant())); // of an even ellipse
 	voter.surface.valid = count > minMajority * double(even.size()) && area > 0.0;
 	if (!voter.surface.valid)
 		return;

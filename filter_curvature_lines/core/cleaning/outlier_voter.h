@@ -22,7 +22,7 @@ struct OutlierVoter {
 	Eigen::Matrix2d    supportShape  = Eigen::Matrix2d::Identity(); // inverse covariance
 
 	// Deviation of its points without what the fit took of it.
-	double  deviation() const;
+	double deviation() const;
 	Support support(const SurfacePatch::Local& p) const;
 	// Standard deviation of the height of a point on the surface above the fit.
 	double heightError() const;

@@ -23,35 +23,35 @@ using Support = BlendOptions::Support;
 constexpr const char* stage = "Denoising";
 
 // Radii in local spacings, or in units of which the cloud has as many in the middle.
-constexpr double smallestRadius  = 2.5; // 20 points: a quadric with some to spare
-constexpr double noiseStep       = 1.26;
-constexpr double noiseSettled    = 1.02; // growth of a smallest radius that is not worth a step
-constexpr double minRadiusNoise  = 5.0; // a patch narrower than this many noise units is all noise
-constexpr double freeStep        = 1.4;
-constexpr double maxFreeRadius   = 15.0;
-constexpr double freeTolerance   = 1.02; // of scores over the best: the end of a ladder
-constexpr double bentStep        = 1.12;
-constexpr double bentStart       = 0.8; // of the free radius
-constexpr double maxBentRadius   = 25.0;
-constexpr double bentTolerance   = 1.01;
+constexpr double smallestRadius = 2.5; // 20 points: a quadric with some to spare
+constexpr double noiseStep      = 1.26;
+constexpr double noiseSettled   = 1.02; // growth of a smallest radius that is not worth a step
+constexpr double minRadiusNoise = 5.0;  // a patch narrower than this many noise units is all noise
+constexpr double freeStep       = 1.4;
+constexpr double maxFreeRadius  = 15.0;
+constexpr double freeTolerance  = 1.02; // of scores over the best: the end of a ladder
+constexpr double bentStep       = 1.12;
+constexpr double bentStart      = 0.8; // of the free radius
+constexpr double maxBentRadius  = 25.0;
+constexpr double bentTolerance  = 1.01;
 // Scores as good as the same: the wider patch has less variance.
-constexpr double bentTie         = 1.001;
-constexpr double gatedStep       = 1.3;
-constexpr double maxGatedRadius  = 17.0;
-constexpr double gatedTolerance  = 1.015;
-constexpr double minPilotRadius  = 3.2;
-constexpr double pilotNoise      = 8.0; // noise units across which an edge is told from noise
-constexpr double maxFlagRadius   = 6.3;
-constexpr double fewestPatches   = 6.0; // in a cloud, of n / radius^2 points
-constexpr double fewPoints       = 0.1; // share of the points that a ladder does not wait for
+constexpr double bentTie        = 1.001;
+constexpr double gatedStep      = 1.3;
+constexpr double maxGatedRadius = 17.0;
+constexpr double gatedTolerance = 1.015;
+constexpr double minPilotRadius = 3.2;
+constexpr double pilotNoise     = 8.0; // noise units across which an edge is told from noise
+constexpr double maxFlagRadius  = 6.3;
+constexpr double fewestPatches  = 6.0; // in a cloud, of n / radius^2 points
+constexpr double fewPoints      = 0.1; // share of the points that a ladder does not wait for
 // Bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2.
-constexpr double unitExponent    = 0.2; // of noise times spacing
+constexpr double unitExponent = 0.2; // of noise times spacing
 
 constexpr Index  fewestPoints    = 8; // a quadric and a residual
 constexpr Index  testPoints      = 5000;
 constexpr double testOverlap     = 19.0;
-constexpr double maxResidual     = 3.0; // noise units, in scores
-constexpr double minPurity       = 0.5; // of a point that tells about smooth surfaces
+constexpr double maxResidual     = 3.0;  // noise units, in scores
+constexpr double minPurity       = 0.5;  // of a point that tells about smooth surfaces
 constexpr double edgePurity      = 0.01; // of a point beside an edge without doubt
 constexpr double fewEdges        = 0.01; // share of such points
 constexpr double minPlainShare   = 0.1;
@@ -59,11 +59,12 @@ constexpr double strictPurity    = 2.0;
 constexpr double mildPurity      = 1.0;
 constexpr double pilotAcceptance = 2.0; // noise units
 constexpr double gatedAcceptance = 3.0;
-constexpr double sharpPurity     = 0.5; // of smooth patches, below which edges are looked for
+constexpr double sharpPurity     = 0.5;  // of smooth patches, below which edges are looked for
 constexpr double sameSide        = 1e-3; // least weight of a neighbour across an edge
 constexpr Index  gainNeighbors   = 24;
-constexpr double smoothGain      = 0.1; // of a squared residual by gates: below it the gate only costs
-constexpr double sharpGain       = 0.3; // above it, it is an edge
+// of a squared residual by gates: below it the gate only costs
+constexpr double smoothGain = 0.1;
+constexpr double sharpGain  = 0.3; // above it, it is an edge
 
 // Ladders end where the data say: every rung takes a share of what is left of their time.
 Progress rung(const Progress& progress, int k)
@@ -84,53 +85,49 @@ public:
 	RobustDenoisingResult run(const Progress& progress);
 
 private:
-	Index      size() const { return m_input.cloud.size(); }
-	void       prepare(const Progress& progress);
-	void       findNoise(const Progress& progress);
-	void       findPlainPoints(const Progress& progress);
-	double     freeRadius(const Progress& progress) const;
-	double     bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
-	Candidate  smoothCandidate(const Progress& progress) const;
+	Index size() const { return m_input.cloud.size(); }
+	void prepare(const Progress& progress);
+	void findNoise(const Progress& progress);
+	void findPlainPoints(const Progress& progress);
+	double freeRadius(const Progress& progress) const;
+	double bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
+	Candidate smoothCandidate(const Progress& progress) const;
 	PatchBlend edgePilot(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	BlendOptions gatedOptions(std::vector<double> radius) const;
-	Candidate  sharpCandidate(
+	Candidate sharpCandidate(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	std::vector<double> pilotRadii(const Candidate& smooth) const;
 	std::vector<double> sharpShare(
 		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
-	void       sharpen(Candidate& smooth, const Progress& progress) const;
-	void       leaveStrays(PatchBlend& blend) const;
-	bool       fits(const std::vector<double>& radii) const;
-	void       findUnits();
+	void sharpen(Candidate& smooth, const Progress& progress) const;
+	void leaveStrays(PatchBlend& blend) const;
+	bool fits(const std::vector<double>& radii) const;
+	void findUnits();
 	std::vector<double> radii(double factor) const; // of units
 	std::vector<double> inSpacings(const std::vector<double>& lengths) const;
-	Candidate  candidate(
+	Candidate candidate(
 		const BlendGuide&         guide,
 		const BlendOptions&       options,
 		const std::vector<Index>& targets,
 		const Progress&           progress) const;
 	double score(const Candidate& candidate, const std::vector<Index>& points) const;
 
-	RobustDenoisingOptions m_options;
-	BlendInput             m_input;
-	std::optional<BlendGuide> m_start;         // the input itself
-	std::vector<Index>     m_everywhere;       // all points
-	std::vector<Index>     m_test;             // points that scores are taken from
-	std::vector<Index>     m_plain;            // of m_test, off the edges
-	std::vector<double>    m_least;            // radius per point, a length: wider than the noise
-	std::vector<double>    m_unit;             // of radii per point, a length
+	RobustDenoisingOptions    m_options;
+	BlendInput                m_input;
+	std::optional<BlendGuide> m_start;      // the input itself
+	std::vector<Index>        m_everywhere; // all points
+	std::vector<Index>        m_test;       // points that scores are taken from
+	std::vector<Index>        m_plain;      // of m_test, off the edges
+	std::vector<double>       m_least;      // radius per point, a length: wider than the noise
+	std::vector<double>       m_unit;       // of radii per point, a length
 };
 
 RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
-		m_options(options),
-		m_input{SpatialOrder(cloud.positions), {}, {}, {}},
-		m_everywhere(cloud.size()),
-		m_test(m_input.order.sample(testPoints)),
-		m_plain(m_test)
+		m_options(options), m_input{SpatialOrder(cloud.positions), {}, {}, {}},
+		m_everywhere(cloud.size()), m_test(m_input.order.sample(testPoints)), m_plain(m_test)
 {
-	m_input.cloud = {
-		m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
+	m_input.cloud = {m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
 	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
 }
 
@@ -167,8 +164,8 @@ std::vector<double> RobustDenoiser::radii(double factor) const
 {
 	std::vector<double> result(size());
 	for (Index i = 0; i < size(); ++i)
-		result[i] = m_options.radius > 0.0 ? factor * m_input.spacing[i] :
-											 std::max(factor * m_unit[i], m_least[i]);
+		result[i] = m_options.radius > 0.0 ? factor * m_input.spacing[i]
+		                                   : std::max(factor * m_unit[i], m_least[i]);
 	return result;
 }
 
@@ -207,14 +204,15 @@ void RobustDenoiser::findNoise(const Progress& progress)
 		if (m_options.noise <= 0.0) {
 			options.radius = m_least;
 			m_input.noise  = localNoise(
-				blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
-				m_input.cloud,
-				m_input.order);
+                blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
+                m_input.cloud,
+                m_input.order);
 		}
 		std::vector<double> wider(size());
 		Index               grown = 0;
 		for (Index i = 0; i < size(); ++i) {
-			wider[i] = std::clamp(minRadiusNoise * m_input.noise[i], m_least[i], noiseStep * m_least[i]);
+			wider[i] =
+				std::clamp(minRadiusNoise * m_input.noise[i], m_least[i], noiseStep * m_least[i]);
 			grown += wider[i] > noiseSettled * m_least[i];
 		}
 		if (double(grown) <= fewPoints * double(size()) || !fits(wider))
@@ -247,7 +245,7 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 				pilotNoise * m_input.noise[i],
 				minPilotRadius * m_input.spacing[i],
 				maxFlagRadius * m_input.spacing[i]));
-	const PatchBlend blend = blendPatches(m_input, *m_start, options, m_test, progress);
+	const PatchBlend   blend = blendPatches(m_input, *m_start, options, m_test, progress);
 	std::vector<Index> plain;
 	Index              clear = 0;
 	for (const Index i : m_test) {
@@ -284,8 +282,8 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 	return radius;
 }
 
-double RobustDenoiser::bentRadius(
-	const BlendGuide& guide, double start, const Progress& progress) const
+double
+RobustDenoiser::bentRadius(const BlendGuide& guide, double start, const Progress& progress) const
 {
 	if (m_options.radius > 0.0)
 		return m_options.radius;
@@ -297,7 +295,7 @@ double RobustDenoiser::bentRadius(
 	for (int k = 0; start < maxBentRadius; ++k, start *= bentStep) {
 		options.radius = radii(start);
 		const double s = score(candidate(guide, options, m_test, rung(progress, k)), m_plain);
-		best = std::min(best, s);
+		best           = std::min(best, s);
 		if (s <= bentTie * best)
 			radius = start;
 		if (s > bentTolerance * best || !fits(options.radius))
@@ -310,19 +308,19 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 {
 	double       factor = freeRadius(progress.sub(0.0, 0.2, stage));
 	BlendOptions options;
-	options.radius = radii(factor);
-	options.purity = strictPurity;
-	Candidate c    = candidate(*m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
+	options.radius  = radii(factor);
+	options.purity  = strictPurity;
+	Candidate c     = candidate(*m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
 	options.support = Support::Bent;
 	options.purity  = mildPurity;
 	double start    = bentStart * factor;
 	for (int pass = 0; pass < 2; ++pass) {
 		const BlendGuide guide(c.blend.positions, c.blend.normals);
 		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
-		factor         = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
-		options.radius = radii(factor);
-		c              = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
-		start          = factor / bentStep;
+		factor                = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
+		options.radius        = radii(factor);
+		c                     = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
+		start                 = factor / bentStep;
 	}
 	return c;
 }
@@ -331,8 +329,9 @@ std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
 {
 	std::vector<double> result(size());
 	for (Index i = 0; i < size(); ++i) {
-		const double wide = std::max(minPilotRadius * m_input.spacing[i], pilotNoise * m_input.noise[i]);
-		result[i]         = std::max(m_least[i], std::min(wide, smooth.radius[i]));
+		const double wide =
+			std::max(minPilotRadius * m_input.spacing[i], pilotNoise * m_input.noise[i]);
+		result[i] = std::max(m_least[i], std::min(wide, smooth.radius[i]));
 	}
 	return result;
 }
@@ -372,12 +371,12 @@ BlendOptions RobustDenoiser::gatedOptions(std::vector<double> radius) const
 Candidate RobustDenoiser::sharpCandidate(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
-	PatchBlend   pilot   = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
-	BlendOptions options = gatedOptions(pilotRadii(smooth));
-	const Progress ladder = progress.sub(0.2, 0.9, stage);
-	const double last  = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
-	double       bestScore = std::numeric_limits<double>::infinity();
-	Candidate    best;
+	PatchBlend     pilot     = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
+	BlendOptions   options   = gatedOptions(pilotRadii(smooth));
+	const Progress ladder    = progress.sub(0.2, 0.9, stage);
+	const double   last      = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
+	double         bestScore = std::numeric_limits<double>::infinity();
+	Candidate      best;
 	for (int k = 0;; ++k) {
 		const BlendGuide guide(pilot.positions, pilot.normals);
 		Candidate        c = candidate(guide, options, targets, rung(ladder, k));
@@ -390,7 +389,7 @@ Candidate RobustDenoiser::sharpCandidate(
 		for (double& radius : options.radius)
 			radius *= gatedStep;
 		if (s > gatedTolerance * bestScore || quantile(inSpacings(options.radius), 0.5) > last ||
-			!fits(options.radius))
+		    !fits(options.radius))
 			break;
 	}
 	options.radius = best.radius;
@@ -438,10 +437,10 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 	const std::vector<double> share = sharpShare(smooth, sharp, targets);
 	for (std::size_t t = 0; t < targets.size(); ++t) {
 		const Index           i = targets[t];
-		const Eigen::Vector3d n = (1.0 - share[t]) * smooth.blend.normals.col(i) +
-								  share[t] * sharp.blend.normals.col(i);
+		const Eigen::Vector3d n =
+			(1.0 - share[t]) * smooth.blend.normals.col(i) + share[t] * sharp.blend.normals.col(i);
 		smooth.blend.positions.col(i) = (1.0 - share[t]) * smooth.blend.positions.col(i) +
-										share[t] * sharp.blend.positions.col(i);
+		                                share[t] * sharp.blend.positions.col(i);
 		if (n.norm() > 0.0)
 			smooth.blend.normals.col(i) = n.normalized();
 	}
@@ -451,7 +450,8 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 void RobustDenoiser::leaveStrays(PatchBlend& blend) const
 {
 	for (Index i = 0; i < size(); ++i)
-		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() > farthestMove(m_input, i))
+		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() >
+		    farthestMove(m_input, i))
 			blend.positions.col(i) = m_input.cloud.positions.col(i);
 }
 

@@ -16,8 +16,8 @@ struct RobustDenoisingOptions {
 
 struct RobustDenoisingResult {
 	Eigen::Matrix3Xd positions, normals; // 3 x N
-	double noise  = 0.0; // used, a length; where it varies the median over the points
-	double radius = 0.0; // used, in local spacings; likewise
+	double           noise  = 0.0; // used, a length; where it varies the median over the points
+	double           radius = 0.0; // used, in local spacings; likewise
 };
 
 RobustDenoisingResult denoiseRobustly(

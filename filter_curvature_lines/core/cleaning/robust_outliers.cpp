@@ -16,23 +16,23 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr Index  usualNeighbors   = 150; // a cluster of outliers is a minority among so many
-constexpr Index  fewestNeighbors  = 24;
-constexpr Index  mostNeighbors    = 400;
-constexpr Index  smallestShare    = 25;  // a voter sees at most this part of the cloud
-constexpr Index  votesPerPoint    = 50;
-constexpr double surfaceNoises    = 7.0; // radius of a voter in noise units, at least
-constexpr double neighborGrowth   = 1.2; // fewer more are not worth a new fit
-constexpr Index  pilotVoters      = 500; // tell how many points voters need
-constexpr int    pilotRounds      = 2;
-constexpr double quietPart        = 0.25; // of the cloud needs fewer, and must not be given more
-constexpr Index  noiseWitnesses   = 20;  // voters whose deviations make the noise, at least
-constexpr double bentOverAnEdge   = 1.5; // noise units of deviation
-constexpr double isolatedShare    = 0.25; // of the usual number of votes
+constexpr Index  usualNeighbors  = 150; // a cluster of outliers is a minority among so many
+constexpr Index  fewestNeighbors = 24;
+constexpr Index  mostNeighbors   = 400;
+constexpr Index  smallestShare   = 25; // a voter sees at most this part of the cloud
+constexpr Index  votesPerPoint   = 50;
+constexpr double surfaceNoises   = 7.0; // radius of a voter in noise units, at least
+constexpr double neighborGrowth  = 1.2; // fewer more are not worth a new fit
+constexpr Index  pilotVoters     = 500; // tell how many points voters need
+constexpr int    pilotRounds     = 2;
+constexpr double quietPart       = 0.25; // of the cloud needs fewer, and must not be given more
+constexpr Index  noiseWitnesses  = 20;   // voters whose deviations make the noise, at least
+constexpr double bentOverAnEdge  = 1.5;  // noise units of deviation
+constexpr double isolatedShare   = 0.25; // of the usual number of votes
 // Outliers that fill a volume make voters of their own: sparse and, for a surface, noisy.
-constexpr double sparse           = 3.5; // times the usual distance to the 6th neighbour
-constexpr double noisy            = 3.0; // times the usual noise
-constexpr double thick            = 0.3; // noise over the spacing: not just a misfit
+constexpr double sparse           = 3.5;       // times the usual distance to the 6th neighbour
+constexpr double noisy            = 3.0;       // times the usual noise
+constexpr double thick            = 0.3;       // noise over the spacing: not just a misfit
 constexpr double doubtfulShare    = 1.8 / 3.5; // of the sensitivity
 constexpr Index  groupSize        = 8;
 constexpr double groupSensitivity = 2.0; // sensitivities, for the mean of a group by its error
@@ -43,21 +43,21 @@ constexpr double rejectedPeers    = 0.4;
 class RobustVote {
 public:
 	RobustVote(const Matrix3Xd& positions, double sensitivity, const Progress& progress);
-	void          fitVoters(const Progress& progress);
-	bool          vote(const Progress& progress); // true when something changed
-	double        noise() const;
-	void          hearGroups(const Progress& progress);
+	void fitVoters(const Progress& progress);
+	bool vote(const Progress& progress); // true when something changed
+	double noise() const;
+	void hearGroups(const Progress& progress);
 	OutlierResult result() const;
 
 private:
-	void  chooseSize(const Progress& progress);
-	void  seatVoters(Index step);
-	void  fitSeated(const Progress& progress);
-	void  measureNoise(const Progress& progress);
-	void  collectVoters();
-	void  rejectByVerdict(std::vector<char>& rejected);
-	void  rejectGroups(std::vector<char>& rejected, const Progress& progress) const;
-	bool  replaceRejected(const std::vector<char>& rejected);
+	void chooseSize(const Progress& progress);
+	void seatVoters(Index step);
+	void fitSeated(const Progress& progress);
+	void measureNoise(const Progress& progress);
+	void collectVoters();
+	void rejectByVerdict(std::vector<char>& rejected);
+	void rejectGroups(std::vector<char>& rejected, const Progress& progress) const;
+	bool replaceRejected(const std::vector<char>& rejected);
 	Index neighborsWanted(const OutlierVoter& voter) const;
 	Index size() const { return static_cast<Index>(m_positions.cols()); }
 
@@ -76,17 +76,11 @@ private:
 	Index                     m_isolated = 0;
 };
 
-RobustVote::RobustVote(
-	const Matrix3Xd& positions, double sensitivity, const Progress& progress) :
-		m_order(positions),
-		m_positions(m_order.arrange(positions)),
-		m_sensitivity(sensitivity),
-		m_search(m_positions),
-		m_crowding(size()),
+RobustVote::RobustVote(const Matrix3Xd& positions, double sensitivity, const Progress& progress) :
+		m_order(positions), m_positions(m_order.arrange(positions)), m_sensitivity(sensitivity),
+		m_search(m_positions), m_crowding(size()),
 		m_largest(std::max(fewestNeighbors, size() / smallestShare)),
-		m_neighbors(std::min(usualNeighbors, m_largest)),
-		m_verdicts(size()),
-		m_rejected(size(), 0)
+		m_neighbors(std::min(usualNeighbors, m_largest)), m_verdicts(size()), m_rejected(size(), 0)
 {
 	parallelFor(size(), progress.sub(0.0, 0.5, "Finding neighbors"), [&](Index i) {
 		const auto nearest = m_search.nearest(m_positions.col(i), crowdSize + 1);
@@ -165,8 +159,7 @@ void RobustVote::fitSeated(const Progress& progress)
 			active.push_back(i);
 	const Matrix3Xd      activePositions = columnsOf(m_positions, active);
 	const NeighborSearch activeSearch(activePositions);
-	const VoterCloud     cloud{
-        m_positions, m_crowding, m_order.rank, m_search, active, activeSearch};
+	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, active, activeSearch};
 	parallelFor(
 		static_cast<Index>(m_voters.size()),
 		progress.sub(0.0, 0.9, "Fitting surfaces"),
@@ -232,9 +225,9 @@ void RobustVote::rejectByVerdict(std::vector<char>& rejected)
 	const double tooMuchNoise = noisy * noise();
 	m_isolated                = 0;
 	for (Index i = 0; i < size(); ++i) {
-		Verdict&   verdict  = m_verdicts[i];
-		const bool volume   = m_crowding[i] > noCrowd && verdict.noise > tooMuchNoise &&
-							verdict.noise > thick * verdict.spacing;
+		Verdict&   verdict = m_verdicts[i];
+		const bool volume  = m_crowding[i] > noCrowd && verdict.noise > tooMuchNoise &&
+		                    verdict.noise > thick * verdict.spacing;
 		const bool isolated =
 			verdict.votes == 0 || volume || (verdict.lonely && verdict.votes < fewest);
 		if (isolated)
@@ -266,8 +259,8 @@ void RobustVote::rejectGroups(std::vector<char>& rejected, const Progress& progr
 		for (const Index j : peers[d])
 			sum += m_verdicts[j].toSurface;
 		const double error = verdict.noise * std::sqrt(peers[d].size() + 1.0);
-		rejected[doubtful[d]] = sum.dot(verdict.toSurface.normalized()) >
-								groupSensitivity * m_sensitivity * error;
+		rejected[doubtful[d]] =
+			sum.dot(verdict.toSurface.normalized()) > groupSensitivity * m_sensitivity * error;
 	}
 	for (int pass = 0; pass < spreadPasses; ++pass) {
 		const std::vector<char> before = rejected;
@@ -294,8 +287,7 @@ bool RobustVote::replaceRejected(const std::vector<char>& rejected)
 			m_stale[v] = 1;
 	}
 	m_rejected = rejected;
-	return changed ||
-		   std::any_of(m_voters.begin(), m_voters.end(), [&](const OutlierVoter& voter) {
+	return changed || std::any_of(m_voters.begin(), m_voters.end(), [&](const OutlierVoter& voter) {
 			   return neighborsWanted(voter) != voter.neighbors;
 		   });
 }

@@ -20,9 +20,9 @@ std::vector<Index> evenSample(const PointCloud& cloud, Index most, const Progres
 		std::iota(kept.begin(), kept.end(), 0);
 		return kept;
 	}
-	const SpatialOrder        order(cloud.positions);
-	const PointCloud          arranged = {order.arrange(cloud.positions), order.arrange(cloud.normals)};
-	const NeighborSearch      search(arranged.positions);
+	const SpatialOrder   order(cloud.positions);
+	const PointCloud     arranged = {order.arrange(cloud.positions), order.arrange(cloud.normals)};
+	const NeighborSearch search(arranged.positions);
 	const std::vector<double> spacing = localSpacing(arranged, search, order, progress);
 
 	const auto share = [&](Index place, double wanted) {

@@ -11,8 +11,8 @@ constexpr double minAgreement  = 0.25;
 
 } // namespace
 
-Eigen::Matrix3Xd gateNormals(
-	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
+Eigen::Matrix3Xd
+gateNormals(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
 {
 	Eigen::Matrix3Xd gate(3, cloud.size());
 	parallelForPoints(search, progress, [&](Index i) {

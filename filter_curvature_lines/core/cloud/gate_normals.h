@@ -10,7 +10,7 @@ namespace curvature_lines {
 
 // 3 x N unit normals: the mean of the given ones around each point, of those that agree with the point's own
 // unless nearly all oppose it. `search`: over the cloud's positions.
-Eigen::Matrix3Xd gateNormals(
-	const PointCloud& cloud, const NeighborSearch& search, const Progress& progress = {});
+Eigen::Matrix3Xd
+gateNormals(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress = {});
 
 } // namespace curvature_lines

@@ -26,7 +26,7 @@ std::vector<double> spreadOver(
 	for (const double value : values)
 		logs.push_back(std::log(value));
 	parallelFor(positions.cols(), progress, [&](Index i) {
-		double sum = 0.0;
+		double                   sum  = 0.0;
 		const std::vector<Index> near = search.nearest(positions.col(i), averaged);
 		for (const Index k : near)
 			sum += logs[k];
@@ -42,15 +42,14 @@ std::vector<double> localSpacing(
 	const Progress&       progress)
 {
 	constexpr Index          k = 16, averaged = 32, thinning = 8;
-	const Index              n = cloud.size();
-	const std::vector<Index> sample =
-		order.sample(std::max(std::min(n, averaged), n / thinning));
-	std::vector<double> side(sample.size());
+	const Index              n      = cloud.size();
+	const std::vector<Index> sample = order.sample(std::max(std::min(n, averaged), n / thinning));
+	std::vector<double>      side(sample.size());
 	parallelFor(static_cast<Index>(sample.size()), progress.sub(0.0, 0.5, stage), [&](Index s) {
 		const Eigen::Vector3d    position = cloud.positions.col(sample[s]);
 		const std::vector<Index> near     = search.nearest(position, k + 1);
 		const double             distance = (cloud.positions.col(near.back()) - position).norm();
-		side[s] = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
+		side[s]                           = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
 	});
 	return spreadOver(cloud.positions, sample, side, averaged, progress.sub(0.5, 1.0, stage));
 }

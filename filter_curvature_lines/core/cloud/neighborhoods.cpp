@@ -21,7 +21,7 @@ struct PositionsAdaptor {
 	const Eigen::Matrix3Xd& positions;
 
 	std::size_t kdtree_get_point_count() const { return positions.cols(); }
-	double      kdtree_get_pt(std::size_t i, std::size_t c) const { return positions(c, i); }
+	double kdtree_get_pt(std::size_t i, std::size_t c) const { return positions(c, i); }
 	template<class Box>
 	bool kdtree_get_bbox(Box&) const
 	{
@@ -50,12 +50,12 @@ public:
 		m_found.clear();
 	}
 	std::size_t size() const { return m_found.size(); }
-	bool        full() const { return m_found.size() == m_capacity; }
-	void        sort() {}
-	double      worstDist() const
+	bool full() const { return m_found.size() == m_capacity; }
+	void sort() {}
+	double worstDist() const
 	{
-		return full() ? m_found.back().first * tieMargin + std::numeric_limits<double>::min() :
-						std::numeric_limits<double>::max();
+		return full() ? m_found.back().first * tieMargin + std::numeric_limits<double>::min()
+		              : std::numeric_limits<double>::max();
 	}
 	bool addPoint(double distance, Index index)
 	{
@@ -87,9 +87,9 @@ public:
 		m_found.clear();
 	}
 	std::size_t size() const { return m_found.size(); }
-	bool        full() const { return true; }
-	void        sort() {}
-	double      worstDist() const
+	bool full() const { return true; }
+	void sort() {}
+	double worstDist() const
 	{
 		return m_squaredRadius * tieMargin + std::numeric_limits<double>::min();
 	}
@@ -114,10 +114,10 @@ public:
 		m_found.clear();
 	}
 	std::size_t size() const { return m_found.size(); }
-	bool        full() const { return true; }
-	void        sort() {}
-	double      worstDist() const { return m_squaredRadius; }
-	bool        addPoint(double, Index index)
+	bool full() const { return true; }
+	void sort() {}
+	double worstDist() const { return m_squaredRadius; }
+	bool addPoint(double, Index index)
 	{
 		m_found.push_back(index);
 		return true;
@@ -134,10 +134,10 @@ public:
 	using DistanceType = double;
 	explicit FirstInBall(double squaredRadius) : m_squaredRadius(squaredRadius) {}
 	std::size_t size() const { return m_found ? 1 : 0; }
-	bool        full() const { return true; }
-	void        sort() {}
-	double      worstDist() const { return m_squaredRadius; }
-	bool        addPoint(double, Index)
+	bool full() const { return true; }
+	void sort() {}
+	double worstDist() const { return m_squaredRadius; }
+	bool addPoint(double, Index)
 	{
 		m_found = true;
 		return false;
@@ -151,9 +151,8 @@ private:
 std::vector<Index> indicesOf(const std::vector<DistanceIndex>& found)
 {
 	std::vector<Index> indices(found.size());
-	std::transform(found.begin(), found.end(), indices.begin(), [](const auto& f) {
-		return f.second;
-	});
+	std::transform(
+		found.begin(), found.end(), indices.begin(), [](const auto& f) { return f.second; });
 	return indices;
 }
 
@@ -163,7 +162,8 @@ constexpr double minAgreement = 0.25;
 
 // Points on the other sheet of a thin part have opposing normals. But a point that nearly all others
 // oppose has a wrong normal itself, and would stand alone by that rule.
-std::vector<Index> sameSheet(const PointCloud& cloud, Index i, const Index* first, const Index* last)
+std::vector<Index>
+sameSheet(const PointCloud& cloud, Index i, const Index* first, const Index* last)
 {
 	std::vector<Index> same;
 	for (const Index* j = first; j != last; ++j)
@@ -178,10 +178,10 @@ std::vector<Index> sameSheet(const PointCloud& cloud, Index i, const Index* firs
 int sliceOf(const Eigen::Vector2d& d, const Eigen::Vector2d& axis)
 {
 	// Turned by half a slice, where it is is told by the sides of three lines: cheaper than its angle.
-	static const double   root3   = std::sqrt(3.0);
-	const double          along   = axis.dot(d), across = axis.x() * d.y() - axis.y() * d.x();
-	const Eigen::Vector2d turned  = {root3 * along - across, along + root3 * across};
-	const bool            upper   = turned.y() > 0.0 || (turned.y() == 0.0 && turned.x() >= 0.0);
+	static const double   root3 = std::sqrt(3.0);
+	const double          along = axis.dot(d), across = axis.x() * d.y() - axis.y() * d.x();
+	const Eigen::Vector2d turned = {root3 * along - across, along + root3 * across};
+	const bool            upper  = turned.y() > 0.0 || (turned.y() == 0.0 && turned.x() >= 0.0);
 	const double          x = root3 * (upper ? turned.x() : -turned.x()), y = std::abs(turned.y());
 	const int             inHalf = x > y || y == 0.0 ? 0 : -x < y ? 1 : 2;
 	return upper ? inHalf : inHalf + sliceCount / 2;
@@ -195,7 +195,7 @@ std::array<Index, sliceCount> closestPerSlice(
 {
 	const TangentFrame frame(cloud.normals.col(i));
 	const auto         offset = [&](Index j) -> Eigen::Vector3d {
-		return cloud.positions.col(j) - cloud.positions.col(i);
+        return cloud.positions.col(j) - cloud.positions.col(i);
 	};
 	Eigen::Vector2d axis    = Eigen::Vector2d::UnitX();
 	double          nearest = std::numeric_limits<double>::infinity();
@@ -266,7 +266,7 @@ struct NeighborSearch::Tree {
 	using Index3 = nanoflann::KDTreeSingleIndexAdaptor<Metric, PositionsAdaptor, 3, Index>;
 
 	explicit Tree(const Eigen::Matrix3Xd& positions) :
-			adaptor {positions}, index(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16))
+			adaptor{positions}, index(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16))
 	{
 		index.buildIndex();
 	}
@@ -341,11 +341,11 @@ MinimumNeighborhoods minimumNeighborhoods(
 	const MinimumNeighborhoodOptions& options,
 	const Progress&                   progress)
 {
-	const Index         n       = cloud.size();
-	const Index         rowSize = std::max<Index>(0, std::min<Index>(options.candidates, n - 1));
-	std::vector<Index>  candidates(std::size_t(n) * rowSize);
+	const Index n       = cloud.size();
+	const Index rowSize = std::max<Index>(0, std::min<Index>(options.candidates, n - 1));
+	std::vector<Index> candidates(std::size_t(n) * rowSize);
 	std::vector<double> freeSpacing(n); // without a threshold on the distance
-	const auto          rowOf = [&](Index i) { return candidates.data() + std::size_t(i) * rowSize; };
+	const auto rowOf = [&](Index i) { return candidates.data() + std::size_t(i) * rowSize; };
 
 	parallelForPoints(search, progress.sub(0.0, 0.7, "Finding neighbors"), [&](Index i) {
 		Index* row = rowOf(i);
@@ -358,21 +358,21 @@ MinimumNeighborhoods minimumNeighborhoods(
 		freeSpacing[i] = meanDistance(cloud, i, slots);
 	});
 
-	MinimumNeighborhoods result;
-	const double         median = positiveMedian(freeSpacing);
+	MinimumNeighborhoods            result;
+	const double                    median = positiveMedian(freeSpacing);
 	std::vector<std::vector<Index>> rows(n);
 	result.spacing.resize(n);
 	result.emptySlices.resize(n);
 	result.status.resize(n);
 	parallelForPoints(search, progress.sub(0.7, 1.0, "Finding neighborhoods"), [&](Index i) {
-		const Index* row = rowOf(i);
+		const Index*                     row = rowOf(i);
 		thread_local std::vector<double> local;
 		local.clear();
 		for (Index c = 0; c < rowSize; ++c)
 			local.push_back(freeSpacing[row[c]]);
 		const double scale = local.empty() ? median : std::max(median, medianInPlace(local));
 		const auto   slots = closestPerSlice(
-			  cloud, i, sameSheet(cloud, i, row, row + rowSize), options.boundaryThreshold * scale);
+            cloud, i, sameSheet(cloud, i, row, row + rowSize), options.boundaryThreshold * scale);
 		for (const Index j : slots)
 			if (j >= 0)
 				rows[i].push_back(j);
@@ -380,10 +380,10 @@ MinimumNeighborhoods minimumNeighborhoods(
 		const int    run      = longestEmptyRun(slots);
 		result.spacing[i]     = spacing > 0.0 ? spacing : (scale > 0.0 ? scale : 1.0);
 		result.emptySlices[i] = run;
-		result.status[i]      = run >= 4              ? PointStatus::Isolated :
-								rows[i].size() < 3 ? PointStatus::TooFewNeighbors :
-								run >= 2              ? PointStatus::Boundary :
-														PointStatus::Ok;
+		result.status[i]      = run >= 4             ? PointStatus::Isolated
+		                        : rows[i].size() < 3 ? PointStatus::TooFewNeighbors
+		                        : run >= 2           ? PointStatus::Boundary
+		                                             : PointStatus::Ok;
 	});
 	result.neighbors     = NeighborLists::fromRows(rows);
 	result.medianSpacing = positiveMedian(result.spacing);
@@ -402,8 +402,8 @@ TangentFrame::TangentFrame(const Eigen::Vector3d& normal) : n(normal)
 		return;
 	}
 	const double a = 1.0 / onePlus;
-	u = {1.0 - n.x() * n.x() * a, -n.x() * n.y() * a, -n.x()};
-	v = {-n.x() * n.y() * a, 1.0 - n.y() * n.y() * a, -n.y()};
+	u              = {1.0 - n.x() * n.x() * a, -n.x() * n.y() * a, -n.x()};
+	v              = {-n.x() * n.y() * a, 1.0 - n.y() * n.y() * a, -n.y()};
 }
 
 } // namespace curvature_lines

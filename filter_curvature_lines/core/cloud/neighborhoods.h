@@ -48,11 +48,12 @@ struct MinimumNeighborhoodOptions {
 
 struct MinimumNeighborhoods {
 	// Up to six per point, one per 60 degree slice of the tangent plane, the first centred on the closest.
-	NeighborLists           neighbors;
-	std::vector<double>     spacing;     // h_i: mean 3-D distance to them (unit-frame length)
-	std::vector<int>        emptySlices; // largest number of *contiguous* empty slices, 0..6
-	std::vector<PointStatus> status;     // Ok, Boundary (>= 2 contiguous), Isolated (>= 4), TooFewNeighbors
-	double                  medianSpacing = 0.0;
+	NeighborLists       neighbors;
+	std::vector<double> spacing;     // h_i: mean 3-D distance to them (unit-frame length)
+	std::vector<int>    emptySlices; // largest number of *contiguous* empty slices, 0..6
+	// Ok, Boundary (>= 2 contiguous), Isolated (>= 4), TooFewNeighbors
+	std::vector<PointStatus> status;
+	double                   medianSpacing = 0.0;
 };
 
 MinimumNeighborhoods minimumNeighborhoods(

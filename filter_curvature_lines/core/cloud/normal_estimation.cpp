@@ -20,7 +20,8 @@ namespace {
 using Kernel      = CGAL::Exact_predicates_inexact_constructions_kernel;
 using OrientPoint = std::tuple<Kernel::Point_3, Kernel::Vector_3, Index>;
 
-constexpr unsigned OrientNeighbors = 12; // enough to connect one sheet, too few to bridge to the next
+// enough to connect one sheet, too few to bridge to the next
+constexpr unsigned OrientNeighbors = 12;
 constexpr int      MaxParts        = 64; // pieces of a cloud that are oriented one after another
 
 Eigen::Vector3d planeNormal(const Eigen::Matrix3Xd& positions, const std::vector<Index>& points)
@@ -50,7 +51,7 @@ void orient(const Eigen::Matrix3Xd& positions, Eigen::Matrix3Xd& normals, const 
 			Kernel::Point_3(p.x(), p.y(), p.z()), Kernel::Vector_3(n.x(), n.y(), n.z()), i);
 	}
 	const auto maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, OrientPoint>())
-						  .normal_map(CGAL::Nth_of_tuple_property_map<1, OrientPoint>());
+	                      .normal_map(CGAL::Nth_of_tuple_property_map<1, OrientPoint>());
 	for (int part = 0; part < MaxParts && rest.size() > OrientNeighbors; ++part) {
 		const auto unreached = CGAL::mst_orient_normals(rest, OrientNeighbors, maps);
 		for (auto point = rest.begin(); point != unreached; ++point) {

@@ -8,7 +8,7 @@
 namespace curvature_lines {
 
 struct NormalEstimationOptions {
-	Index neighbors = 25; // points per plane fit; 15 keeps edges, 50 resists noise
+	Index neighbors = 25;   // points per plane fit; 15 keeps edges, 50 resists noise
 	bool  orient    = true; // propagate one orientation, outward for closed shapes
 };
 

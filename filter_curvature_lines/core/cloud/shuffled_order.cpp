@@ -60,9 +60,8 @@ std::vector<Index> shuffledOrder(const Eigen::Matrix3Xd& positions)
 	for (Index rank = 0; rank < n; ++rank)
 		scattered[rank] = {scatter(rank), order[rank]};
 	std::sort(scattered.begin(), scattered.end());
-	std::transform(scattered.begin(), scattered.end(), order.begin(), [](const auto& s) {
-		return s.second;
-	});
+	std::transform(
+		scattered.begin(), scattered.end(), order.begin(), [](const auto& s) { return s.second; });
 	return order;
 }
 

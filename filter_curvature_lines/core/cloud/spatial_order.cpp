@@ -76,7 +76,7 @@ PreparedCloud inSpatialOrder(const PreparedCloud& prepared)
 {
 	const SpatialOrder order(prepared.cloud.positions);
 	PreparedCloud      result = prepared;
-	result.cloud              = {order.arrange(prepared.cloud.positions), order.arrange(prepared.cloud.normals)};
+	result.cloud = {order.arrange(prepared.cloud.positions), order.arrange(prepared.cloud.normals)};
 	std::vector<Index> place(order.source.size());
 	for (std::size_t k = 0; k < place.size(); ++k) {
 		place[order.source[k]] = static_cast<Index>(k);

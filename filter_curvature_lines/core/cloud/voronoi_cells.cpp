@@ -29,8 +29,7 @@ constexpr Index ReportEvery = 8192;
 // Insertion in space-filling order keeps point location nearly constant. The order is a pure function
 // of the sites, and CGAL breaks cospherical ties by a symbolic perturbation of the coordinates, so the
 // triangulation does not depend on it.
-std::vector<Edge>
-delaunayEdges(const Eigen::Matrix3Xd& sites, const Progress& progress)
+std::vector<Edge> delaunayEdges(const Eigen::Matrix3Xd& sites, const Progress& progress)
 {
 	const Index        n = static_cast<Index>(sites.cols());
 	std::vector<Point> points;
@@ -54,7 +53,8 @@ delaunayEdges(const Eigen::Matrix3Xd& sites, const Progress& progress)
 		last = known == 0 ? triangulation.insert(p) : triangulation.insert(p, last->cell());
 		if (triangulation.number_of_vertices() > known)
 			last->info() = static_cast<Index>(order[k]);
-		else // a site at the same position: reachable, at distance zero, through the one that came first
+		// a site at the same position: reachable, at distance zero, through the one that came first
+		else
 			edges.emplace_back(last->info(), static_cast<Index>(order[k]));
 		if (k % ReportEvery == 0)
 			progress.report(0.8 * k / n);
@@ -82,7 +82,8 @@ NeighborLists symmetricRows(Index n, const std::vector<Edge>& edges)
 		rows.indices[next[e.second]++] = e.first;
 	}
 	for (Index i = 0; i < n; ++i)
-		std::sort(rows.indices.begin() + rows.offsets[i], rows.indices.begin() + rows.offsets[i + 1]);
+		std::sort(
+			rows.indices.begin() + rows.offsets[i], rows.indices.begin() + rows.offsets[i + 1]);
 	return rows;
 }
 
@@ -90,8 +91,7 @@ NeighborLists symmetricRows(Index n, const std::vector<Edge>& edges)
 
 VoronoiCells::VoronoiCells(const Eigen::Matrix3Xd& sites, const Progress& progress) :
 		m_sites(sites),
-		m_neighbors(
-			symmetricRows(static_cast<Index>(sites.cols()), delaunayEdges(sites, progress)))
+		m_neighbors(symmetricRows(static_cast<Index>(sites.cols()), delaunayEdges(sites, progress)))
 {
 	progress.report(1.0);
 }
@@ -141,16 +141,15 @@ VoronoiCells::walk(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Index sta
 	double                current = distance2(b, cell);
 	// Only cells closer to b lie ahead, so the walk ends for the reason locate() does.
 	while (true) {
-		Crossing next {2.0, cell, -1};
+		Crossing next{2.0, cell, -1};
 		double   nextProgress = 0.0, nextDistance = 0.0;
 		for (Index n : m_neighbors[cell]) {
 			const double distance = distance2(b, n);
 			if (distance >= current)
 				continue;
 			// h(x) = <s_n - s_cell, x - midpoint> is linear along the segment and positive beyond the wall.
-			const Eigen::Vector3d across  = m_sites.col(n) - m_sites.col(cell);
-			const double          before  =
-				across.dot(a - 0.5 * (m_sites.col(n) + m_sites.col(cell)));
+			const Eigen::Vector3d across = m_sites.col(n) - m_sites.col(cell);
+			const double before   = across.dot(a - 0.5 * (m_sites.col(n) + m_sites.col(cell)));
 			const double progress = across.dot(direction);
 			const double wall     = progress > 0.0 ? -before / progress : 1.0;
 			const double entry    = std::clamp(wall, t, 1.0);

@@ -18,8 +18,9 @@ public:
 	// Only neighbours are kept. Coplanar sites are fine. Throws InputError when they span less than a plane.
 	explicit VoronoiCells(const Eigen::Matrix3Xd& sites, const Progress& progress = {});
 
-	Index                 size() const { return m_neighbors.size(); }
-	NeighborLists::Row    neighbors(Index site) const { return m_neighbors[site]; } // Delaunay, by index
+	Index size() const { return m_neighbors.size(); }
+	// Delaunay, by index
+	NeighborLists::Row neighbors(Index site) const { return m_neighbors[site]; }
 	const Eigen::Vector3d site(Index i) const { return m_sites.col(i); }
 
 	// The cell of `point`, by greedy descent from `start` (exact on a Delaunay graph; ties to the lower index).
@@ -27,7 +28,8 @@ public:
 
 	// Walls crossed on the way from a (in cell `start`) to b, by increasing t, each to a cell closer to b.
 	// Ends in locate(b). A point shared by more than two cells gives several crossings of equal t.
-	std::vector<Crossing> walk(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Index start) const;
+	std::vector<Crossing>
+	walk(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Index start) const;
 
 private:
 	double distance2(const Eigen::Vector3d& point, Index i) const

@@ -16,9 +16,10 @@ struct CreaseCurve {
 	Eigen::Matrix3Xd left, right;
 	Eigen::VectorXd  angle; // M, between the two normals, radians; positive where convex
 	bool             closed = false;
-	Index            start = -1, end = -1; // corner at the first and at the last vertex, -1: the crease fades out
+	// corner at the first and at the last vertex, -1: the crease fades out
+	Index start = -1, end = -1;
 
-	Index  size() const { return static_cast<Index>(positions.cols()); }
+	Index size() const { return static_cast<Index>(positions.cols()); }
 	double length() const;
 };
 

@@ -36,10 +36,13 @@ bool continues(const CreaseEnd& a, const CreaseEnd& b, const CreaseTracing& trac
 	const CreasePoint onward = b.vertex.reversed();
 	const Vector3d    d      = onward.position - a.vertex.position;
 	const double      along  = d.dot(a.vertex.tangent);
-	return a.vertex.angle * onward.angle > 0.0 && a.vertex.tangent.dot(onward.tangent) > straightOn &&
-		a.vertex.left.dot(onward.left) > straightOn && a.vertex.right.dot(onward.right) > straightOn &&
-		d.norm() < reachOf(a.vertex, tracing.noise()) && along > -spacingsBehind * a.vertex.spacing &&
-		(d - along * a.vertex.tangent).norm() < tracing.width(a.vertex);
+	return a.vertex.angle * onward.angle > 0.0 &&
+	       a.vertex.tangent.dot(onward.tangent) > straightOn &&
+	       a.vertex.left.dot(onward.left) > straightOn &&
+	       a.vertex.right.dot(onward.right) > straightOn &&
+	       d.norm() < reachOf(a.vertex, tracing.noise()) &&
+	       along > -spacingsBehind * a.vertex.spacing &&
+	       (d - along * a.vertex.tangent).norm() < tracing.width(a.vertex);
 }
 
 } // namespace
@@ -80,13 +83,14 @@ void joinGaps(const CreaseTracing& tracing, double step, std::vector<CreaseTrace
 		return;
 	const Eigen::Matrix3Xd positions = positionsOf(ends);
 	const NeighborSearch   search(positions);
-	const auto mayJoin = [&](const CreaseEnd& a, const CreaseEnd& b) {
-		return (a.trace != b.trace || lengthInSpacings(traces[a.trace]) >= shortestLoop) &&
-			continues(a, b, tracing) && continues(b, a, tracing);
+	const auto             mayJoin = [&](const CreaseEnd& a, const CreaseEnd& b) {
+        return (a.trace != b.trace || lengthInSpacings(traces[a.trace]) >= shortestLoop) &&
+               continues(a, b, tracing) && continues(b, a, tracing);
 	};
 	std::vector<std::tuple<double, Index, Index>> candidates; // distance, two ends
 	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
-		for (const Index b : search.within(positions.col(a), reachOf(ends[a].vertex, tracing.noise())))
+		for (const Index b :
+		     search.within(positions.col(a), reachOf(ends[a].vertex, tracing.noise())))
 			if (a < b && mayJoin(ends[a], ends[b]))
 				candidates.emplace_back((positions.col(b) - positions.col(a)).norm(), a, b);
 	std::sort(candidates.begin(), candidates.end());
@@ -115,7 +119,7 @@ void joinGaps(const CreaseTracing& tracing, double step, std::vector<CreaseTrace
 			if (!chain.vertices.empty()) { // what overlaps
 				const CreasePoint last = chain.vertices.back();
 				while (from + 1 != next.vertices.end() &&
-					   (from->position - last.position).dot(last.tangent) < 0.3 * step)
+				       (from->position - last.position).dot(last.tangent) < 0.3 * step)
 					++from;
 			}
 			chain.vertices.insert(chain.vertices.end(), from, next.vertices.end());

@@ -18,7 +18,7 @@ struct CreaseEnd {
 
 // Front and back of every open trace in turn.
 std::vector<CreaseEnd> endsOf(const std::vector<CreaseTrace>& traces);
-Eigen::Matrix3Xd       positionsOf(const std::vector<CreaseEnd>& ends);
+Eigen::Matrix3Xd positionsOf(const std::vector<CreaseEnd>& ends);
 
 // Length over which points may be missing at the end of a crease.
 double reachOf(const CreasePoint& end, double noise);

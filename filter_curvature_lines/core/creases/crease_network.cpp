@@ -17,10 +17,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double parallel  = 0.9;  // cosine
-constexpr double minLength = 5.0;  // spacings; a shorter curve needs corners at both ends
-constexpr int    maxRounds = 20;   // each drops a stub; three or so are usual
-constexpr double pull      = 1e-3; // of a corner to the ends of its curves, if the faces leave it free
+constexpr double parallel  = 0.9; // cosine
+constexpr double minLength = 5.0; // spacings; a shorter curve needs corners at both ends
+constexpr int    maxRounds = 20;  // each drops a stub; three or so are usual
+// of a corner to the ends of its curves, if the faces leave it free
+constexpr double pull = 1e-3;
 
 // The point nearest to all faces of the vertices.
 Vector3d cornerOf(const std::vector<const CreasePoint*>& vertices)
@@ -65,14 +66,14 @@ private:
 		const Vector3d d     = corner - end.position;
 		const double   along = d.dot(end.tangent);
 		return d.norm() <= reach(end) && along >= -spacingsBehind * end.spacing &&
-			(d - along * end.tangent).norm() <= m_tracing.width(end);
+		       (d - along * end.tangent).norm() <= m_tracing.width(end);
 	}
 	void findCorners();
 	void findJunction(const CreaseEnd& end, Index& corner);
 	void cutAtCorners();
 	bool dropStubs();
 	std::vector<CreasePoint> betweenCorners(Index trace) const;
-	CreaseCurve              resampled(Index trace, double spacing) const;
+	CreaseCurve resampled(Index trace, double spacing) const;
 
 	const CreaseTracing&              m_tracing;
 	double                            m_step;
@@ -93,8 +94,8 @@ void Network::findCorners()
 	DisjointSets           groups(static_cast<Index>(ends.size()));
 	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
 		for (const Index b : search.within(positions.col(a), 2.0 * reach(ends[a].vertex))) {
-			if (b <= a ||
-				(ends[a].trace == ends[b].trace && lengthInSpacings(m_traces[ends[a].trace]) < shortestLoop))
+			if (b <= a || (ends[a].trace == ends[b].trace &&
+			               lengthInSpacings(m_traces[ends[a].trace]) < shortestLoop))
 				continue;
 			const Vector3d corner = cornerOf({&ends[a].vertex, &ends[b].vertex});
 			if (accepts(ends[a].vertex, corner) && accepts(ends[b].vertex, corner))
@@ -113,8 +114,8 @@ void Network::findCorners()
 			const auto worst = std::max_element(list.begin(), list.end(), [&](Index a, Index b) {
 				return (corner - positions.col(a)).norm() < (corner - positions.col(b)).norm();
 			});
-			const bool fits = std::all_of(
-				list.begin(), list.end(), [&](Index e) { return accepts(ends[e].vertex, corner); });
+			const bool fits  = std::all_of(
+                list.begin(), list.end(), [&](Index e) { return accepts(ends[e].vertex, corner); });
 			if (fits)
 				break;
 			list.erase(worst);
@@ -139,7 +140,8 @@ void Network::findJunction(const CreaseEnd& end, Index& corner)
 		const auto& path = m_traces[t].vertices;
 		for (std::size_t v = 0; v < path.size(); ++v) {
 			const double distance = (path[v].position - end.vertex.position).norm();
-			if (distance > reach(end.vertex) || std::abs(path[v].tangent.dot(end.vertex.tangent)) > parallel)
+			if (distance > reach(end.vertex) ||
+			    std::abs(path[v].tangent.dot(end.vertex.tangent)) > parallel)
 				continue;
 			const std::size_t fromEnd = end.atBack ? path.size() - 1 - v : v;
 			if (t == end.trace && fromEnd * m_step < shortestLoop * end.vertex.spacing)
@@ -147,7 +149,7 @@ void Network::findJunction(const CreaseEnd& end, Index& corner)
 			const Vector3d place = cornerOf({&end.vertex, &path[v]});
 			const double   move  = (place - end.vertex.position).norm();
 			if (move < nearest && accepts(end.vertex, place) &&
-				(place - path[v].position).norm() < m_tracing.width(path[v])) {
+			    (place - path[v].position).norm() < m_tracing.width(path[v])) {
 				nearest = move;
 				best    = place;
 			}
@@ -171,9 +173,10 @@ void Network::cutAtCorners()
 		for (Index c = 0; c < static_cast<Index>(m_corners.size()); ++c) {
 			if (m_corner[t][0] == c || m_corner[t][1] == c)
 				continue;
-			const auto nearest = std::min_element(path.begin(), path.end(), [&](const auto& a, const auto& b) {
-				return (a.position - m_corners[c]).norm() < (b.position - m_corners[c]).norm();
-			});
+			const auto nearest =
+				std::min_element(path.begin(), path.end(), [&](const auto& a, const auto& b) {
+					return (a.position - m_corners[c]).norm() < (b.position - m_corners[c]).norm();
+				});
 			if ((nearest->position - m_corners[c]).norm() > m_tracing.width(*nearest))
 				continue;
 			const auto  v    = static_cast<Index>(nearest - path.begin());
@@ -199,7 +202,7 @@ void Network::cutAtCorners()
 			for (auto& cut : cuts)
 				cut.first -= v;
 			cuts.erase(cuts.begin());
-			m_corner[t] = {c, c};
+			m_corner[t]  = {c, c};
 			trace.closed = false;
 		}
 		Index from = 0, corner = m_corner[t][0];
@@ -246,7 +249,8 @@ std::vector<CreasePoint> Network::betweenCorners(Index trace) const
 			continue;
 		const double outward = side == 0 ? -1.0 : 1.0;
 		while (path.size() > 1 &&
-			   (m_corners[corner] - path.back().position).dot(outward * path.back().tangent) < 0.4 * m_step)
+		       (m_corners[corner] - path.back().position).dot(outward * path.back().tangent) <
+		           0.4 * m_step)
 			path.pop_back();
 		CreasePoint vertex = path.back();
 		vertex.position    = m_corners[corner];
@@ -278,8 +282,8 @@ CreaseCurve Network::resampled(Index trace, double spacing) const
 		const double s = at.back() * k / segments;
 		while (before + 2 < path.size() && at[before + 1] < s)
 			++before;
-		const CreasePoint& a = path[before];
-		const CreasePoint& b = path[before + 1];
+		const CreasePoint& a     = path[before];
+		const CreasePoint& b     = path[before + 1];
 		const double       along = (s - at[before]) / std::max(at[before + 1] - at[before], 1e-300);
 		const double       t     = std::clamp(along, 0.0, 1.0);
 		CreasePoint        vertex = t < 0.5 ? a : b;
@@ -287,7 +291,8 @@ CreaseCurve Network::resampled(Index trace, double spacing) const
 		vertex.tangent            = ((1.0 - t) * a.tangent + t * b.tangent).normalized();
 		vertex.left               = ((1.0 - t) * a.left + t * b.left).normalized();
 		vertex.right              = ((1.0 - t) * a.right + t * b.right).normalized();
-		const bool corner = !closed && ((k == 0 && curve.start >= 0) || (k == segments && curve.end >= 0));
+		const bool corner =
+			!closed && ((k == 0 && curve.start >= 0) || (k == segments && curve.end >= 0));
 		if (!corner)
 			if (const auto fitted = m_tracing.curveAt(vertex))
 				vertex = *fitted;
@@ -305,9 +310,10 @@ Creases Network::result(double spacing) const
 	Creases creases;
 	for (Index t = 0; t < static_cast<Index>(m_traces.size()); ++t)
 		creases.curves.push_back(resampled(t, spacing));
-	std::stable_sort(creases.curves.begin(), creases.curves.end(), [](const auto& a, const auto& b) {
-		return a.length() > b.length();
-	});
+	std::stable_sort(
+		creases.curves.begin(), creases.curves.end(), [](const auto& a, const auto& b) {
+			return a.length() > b.length();
+		});
 	creases.corners.resize(m_corners.size());
 	for (std::size_t c = 0; c < m_corners.size(); ++c)
 		creases.corners[c].position = m_corners[c];

@@ -21,14 +21,15 @@ constexpr double spacingsInRadius = 4.5;  // of the ball that holds so many poin
 constexpr double noiseInRadius    = 6.0;  // the ball is no smaller than this many noise levels
 constexpr Index  noisePoints      = 2000; // where the noise is measured
 constexpr double largestTurn      = 0.5;  // of a normal along which a face is continued
-constexpr double groupShare       = 0.85;  // of the smallest angle: normals of one face
+constexpr double groupShare       = 0.85; // of the smallest angle: normals of one face
 constexpr int    maxFaces         = 6;
 constexpr int    minMembers       = 3;
-constexpr double largestAngle     = 165.0 * EIGEN_PI / 180.0; // two sheets back to back are no crease
-constexpr double supportSpacings  = 3.0; // distance from the crease to points of its faces
-constexpr double supportNoise     = 2.5;
-constexpr double sideShare        = 0.7; // of a face's points on its side of the crease
-constexpr double outlierScales    = 3.0;
+// two sheets back to back are no crease
+constexpr double largestAngle    = 165.0 * EIGEN_PI / 180.0;
+constexpr double supportSpacings = 3.0; // distance from the crease to points of its faces
+constexpr double supportNoise    = 2.5;
+constexpr double sideShare       = 0.7; // of a face's points on its side of the crease
+constexpr double outlierScales   = 3.0;
 
 // The points around one that belong together, continued to other places. Holds the scratch of one thread.
 class FacesAround {
@@ -41,8 +42,8 @@ public:
 
 	double radius() const { return m_radius; }
 	double spacing() const { return m_spacing; }
-	int    faces() const { return m_faces; }
-	int    members(int face) const { return m_count[face]; }
+	int faces() const { return m_faces; }
+	int members(int face) const { return m_count[face]; }
 
 	// Face 0 is that of point i.
 	void group(
@@ -56,7 +57,7 @@ public:
 		m_elements              = &elements;
 		m_near                  = search.nearest(position, neighbors);
 		m_radius                = (elements[m_near.back()].position - position).norm();
-		m_spacing = m_radius / spacingsInRadius;
+		m_spacing               = m_radius / spacingsInRadius;
 		if (m_radius < noiseInRadius * noise) {
 			m_radius = noiseInRadius * noise;
 			m_near   = search.within(position, m_radius);
@@ -68,9 +69,9 @@ public:
 		std::array<Vector3d, maxFaces> sums;
 		sums[0] = elements[i].normal;
 		for (std::size_t k = 0; k < m_near.size(); ++k) {
-			const SurfaceElement& e = elements[m_near[k]];
-			const Vector3d d    = position - e.position;
-			const Vector3d turn = e.shape * d;
+			const SurfaceElement& e    = elements[m_near[k]];
+			const Vector3d        d    = position - e.position;
+			const Vector3d        turn = e.shape * d;
 			if (turn.norm() > largestTurn)
 				continue;
 			const Vector3d normal = (e.normal + turn).normalized();
@@ -177,8 +178,8 @@ private:
 	int                                    m_faces = 0;
 	std::array<int, maxFaces>              m_count = {};
 	std::vector<Index>                     m_near;
-	std::vector<int>                       m_face;   // per entry of m_near, -1: none
-	std::vector<double>                    m_weight; // per entry of m_near
+	std::vector<int>                       m_face;    // per entry of m_near, -1: none
+	std::vector<double>                    m_weight;  // per entry of m_near
 	std::vector<std::pair<double, double>> m_heights; // height, weight
 	std::vector<double>                    m_sorted;
 };
@@ -188,7 +189,9 @@ Vector3d stepOntoBoth(const FacesAround::Plane& a, const FacesAround::Plane& b)
 {
 	const double cosine = a.normal.dot(b.normal);
 	const double det    = 1.0 - cosine * cosine;
-	return -((a.height - cosine * b.height) * a.normal + (b.height - cosine * a.height) * b.normal) / det;
+	return -((a.height - cosine * b.height) * a.normal +
+	         (b.height - cosine * a.height) * b.normal) /
+	       det;
 }
 
 // Where face 0 meets another one. False where they do not.
@@ -220,17 +223,18 @@ bool meet(
 	const double   otherAbove = across.dot(own.normal), ownAbove = -across.dot(other.normal);
 	if (otherAbove * ownAbove <= 0.0)
 		return false;
-	const double side  = otherAbove < 0.0 ? 1.0 : -1.0; // +1: convex
-	result.position    = foot;
-	result.left        = own.normal;
-	result.right       = other.normal;
-	result.tangent     = (side * own.normal.cross(other.normal)).normalized();
-	result.angle       = side * angle;
-	result.spacing     = around.spacing();
-	result.weight      = ballKernel((foot - position).squaredNorm() / (around.radius() * around.radius()));
+	const double side = otherAbove < 0.0 ? 1.0 : -1.0; // +1: convex
+	result.position   = foot;
+	result.left       = own.normal;
+	result.right      = other.normal;
+	result.tangent    = (side * own.normal.cross(other.normal)).normalized();
+	result.angle      = side * angle;
+	result.spacing    = around.spacing();
+	result.weight =
+		ballKernel((foot - position).squaredNorm() / (around.radius() * around.radius()));
 	const double reach = std::max(supportSpacings * around.spacing(), supportNoise * noise);
 	return around.supports(0, foot, own.normal.cross(result.tangent), reach) &&
-		around.supports(face, foot, result.tangent.cross(other.normal), reach);
+	       around.supports(face, foot, result.tangent.cross(other.normal), reach);
 }
 
 } // namespace
@@ -272,7 +276,7 @@ CreasePoints findCreasePoints(
 		for (int face = 1; face < around.faces(); ++face) {
 			CreasePoint point;
 			if (around.members(face) >= minMembers &&
-				meet(around, face, elements[i].position, result.noise, minAngle, point))
+			    meet(around, face, elements[i].position, result.noise, minAngle, point))
 				rows[i].push_back(point);
 		}
 	});

@@ -8,12 +8,12 @@ namespace curvature_lines {
 
 // A place where two faces meet, found from a point on one of them.
 struct CreasePoint {
-	Eigen::Vector3d position;    // of the crease, nearest to the point
-	Eigen::Vector3d tangent;     // unit, with the left face to the left (see creases.h)
-	Eigen::Vector3d left, right; // unit normals of the faces there
-	double          angle   = 0.0; // between them, radians; positive where convex
-	double          weight  = 0.0; // 0..1, small for points far from the crease
-	double          spacing = 0.0; // of the points around, length
+	Eigen::Vector3d position;        // of the crease, nearest to the point
+	Eigen::Vector3d tangent;         // unit, with the left face to the left (see creases.h)
+	Eigen::Vector3d left, right;     // unit normals of the faces there
+	double          angle    = 0.0;  // between them, radians; positive where convex
+	double          weight   = 0.0;  // 0..1, small for points far from the crease
+	double          spacing  = 0.0;  // of the points around, length
 	bool            fromLeft = true; // the point lies on the left face
 
 	// The same seen the other way round.
@@ -22,7 +22,8 @@ struct CreasePoint {
 
 struct CreasePoints {
 	std::vector<CreasePoint> points;
-	double                   noise = 0.0; // standard deviation of the heights over the surface, length
+	// standard deviation of the heights over the surface, length
+	double noise = 0.0;
 };
 
 // `elements`: one per point, at the point itself. Pairs of faces at less than minAngle (radians) are none.

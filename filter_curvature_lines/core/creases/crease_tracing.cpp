@@ -15,12 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double window        = 3.0;  // local spacings along the curve
+constexpr double window        = 3.0; // local spacings along the curve
 constexpr double widthSpacings = 1.5;
 constexpr double widthNoise    = 2.5;
-constexpr double sameTangent   = 0.7;  // cosines
+constexpr double sameTangent   = 0.7; // cosines
 constexpr double sameNormal    = 0.75;
-constexpr int    minSupport    = 3;    // points within one spacing along the curve
+constexpr int    minSupport    = 3; // points within one spacing along the curve
 constexpr double tracedShare   = 0.6;
 constexpr double robustScale   = 2.5;
 
@@ -79,19 +79,20 @@ double CreaseTracing::width(const CreasePoint& at) const
 	return std::max(widthSpacings * at.spacing, widthNoise * m_points.noise);
 }
 
-std::vector<Index> CreaseTracing::sameCrease(const CreasePoint& at, double radius, double width) const
+std::vector<Index>
+CreaseTracing::sameCrease(const CreasePoint& at, double radius, double width) const
 {
-	std::vector<Index> near = m_search.within(at.position, radius);
+	std::vector<Index> near    = m_search.within(at.position, radius);
 	const auto         differs = [&](Index k) {
-		const CreasePoint& p      = m_points.points[k];
-		const double       cosine = p.tangent.dot(at.tangent);
-		const Vector3d     d      = p.position - at.position;
-		if (std::abs(cosine) < sameTangent || p.angle * at.angle < 0.0 ||
-			(d - d.dot(at.tangent) * at.tangent).norm() > width)
-			return true;
-		const Vector3d& left  = cosine > 0.0 ? p.left : p.right;
-		const Vector3d& right = cosine > 0.0 ? p.right : p.left;
-		return left.dot(at.left) < sameNormal || right.dot(at.right) < sameNormal;
+        const CreasePoint& p      = m_points.points[k];
+        const double       cosine = p.tangent.dot(at.tangent);
+        const Vector3d     d      = p.position - at.position;
+        if (std::abs(cosine) < sameTangent || p.angle * at.angle < 0.0 ||
+            (d - d.dot(at.tangent) * at.tangent).norm() > width)
+            return true;
+        const Vector3d& left  = cosine > 0.0 ? p.left : p.right;
+        const Vector3d& right = cosine > 0.0 ? p.right : p.left;
+        return left.dot(at.left) < sameNormal || right.dot(at.right) < sameNormal;
 	};
 	near.erase(std::remove_if(near.begin(), near.end(), differs), near.end());
 	return near;
@@ -99,9 +100,9 @@ std::vector<Index> CreaseTracing::sameCrease(const CreasePoint& at, double radiu
 
 std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) const
 {
-	const double             radius = std::max(window * guess.spacing, width(guess));
-	const std::vector<Index> near   = sameCrease(guess, radius, width(guess));
-	const TangentFrame       frame(guess.tangent);
+	const double                 radius = std::max(window * guess.spacing, width(guess));
+	const std::vector<Index>     near   = sameCrease(guess, radius, width(guess));
+	const TangentFrame           frame(guess.tangent);
 	std::vector<double>          along, weights, distances;
 	std::vector<Eigen::Vector2d> across;
 	int                          left = 0, right = 0; // points of the two faces
@@ -110,10 +111,10 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 	result.left = result.right = Vector3d::Zero();
 	result.spacing             = 0.0;
 	for (const Index k : near) {
-		const CreasePoint& p      = m_points.points[k];
-		const bool         same   = p.tangent.dot(guess.tangent) > 0.0;
-		const Vector3d     d      = p.position - guess.position;
-		const double       weight = p.weight * ballKernel(d.squaredNorm() / (radius * radius)) + 1e-9;
+		const CreasePoint& p    = m_points.points[k];
+		const bool         same = p.tangent.dot(guess.tangent) > 0.0;
+		const Vector3d     d    = p.position - guess.position;
+		const double weight     = p.weight * ballKernel(d.squaredNorm() / (radius * radius)) + 1e-9;
 		along.push_back(d.dot(guess.tangent));
 		across.push_back(frame.toPlane(d));
 		weights.push_back(weight);
@@ -136,7 +137,7 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 		const double t = distances[k] / scale;
 		weights[k] /= (1.0 + t * t) * (1.0 + t * t);
 	}
-	fit = fitAlong(along, across, weights, radius);
+	fit             = fitAlong(along, across, weights, radius);
 	result.position = guess.position + frame.toSpace(fit.value);
 	result.tangent  = (guess.tangent + frame.toSpace(fit.slope)).normalized();
 	result.left.normalize();
@@ -145,7 +146,7 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 	result.angle  = angle / total;
 	result.weight = left + right;
 	if ((result.position - guess.position).norm() > width(guess) ||
-		result.tangent.dot(guess.tangent) < sameTangent || !result.position.allFinite())
+	    result.tangent.dot(guess.tangent) < sameTangent || !result.position.allFinite())
 		return std::nullopt;
 	return result;
 }
@@ -153,7 +154,8 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 bool CreaseTracing::isTraced(const CreasePoint& at) const
 {
 	const std::vector<Index> near = sameCrease(at, at.spacing, width(at));
-	const auto traced = std::count_if(near.begin(), near.end(), [&](Index k) { return m_traced[k]; });
+	const auto               traced =
+		std::count_if(near.begin(), near.end(), [&](Index k) { return m_traced[k]; });
 	return traced > tracedShare * near.size();
 }
 
@@ -177,7 +179,7 @@ void CreaseTracing::follow(double step, CreaseTrace& trace) const
 			return;
 		for (std::size_t v = 0; v + 4 < path.size(); ++v)
 			if ((path[v].position - next->position).norm() < 0.8 * step &&
-				path[v].tangent.dot(next->tangent) > sameTangent) {
+			    path[v].tangent.dot(next->tangent) > sameTangent) {
 				trace.closed = v < 2;
 				if (v == 1)
 					path.erase(path.begin());

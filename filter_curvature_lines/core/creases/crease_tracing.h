@@ -33,9 +33,9 @@ private:
 	static Eigen::Matrix3Xd positionsOf(const std::vector<CreasePoint>& points);
 	// Those of the points around that belong to the same crease, the right way round.
 	std::vector<Index> sameCrease(const CreasePoint& at, double radius, double width) const;
-	void               follow(double step, CreaseTrace& trace) const;
-	bool               isTraced(const CreasePoint& at) const;
-	void               markTraced(const CreaseTrace& trace, double step);
+	void follow(double step, CreaseTrace& trace) const;
+	bool isTraced(const CreasePoint& at) const;
+	void markTraced(const CreaseTrace& trace, double step);
 
 	const CreasePoints& m_points;
 	Eigen::Matrix3Xd    m_positions;

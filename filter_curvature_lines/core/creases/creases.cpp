@@ -37,13 +37,13 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 	}
 	std::vector<Eigen::Matrix3d> shapes(cloud.size(), Eigen::Matrix3d::Zero());
 	parallelForPoints(search, progress, [&](Index i) {
-		const SurfaceElement&    own    = elements[i];
-		const std::vector<Index> near   = search.nearest(own.position, shapeNeighbors);
-		const double             radius = 1.05 * (elements[near.back()].position - own.position).norm();
+		const SurfaceElement&    own  = elements[i];
+		const std::vector<Index> near = search.nearest(own.position, shapeNeighbors);
+		const double radius = 1.05 * (elements[near.back()].position - own.position).norm();
 		thread_local std::vector<Index> same;
 		LocalSurfaceFitter&             fitter = LocalSurfaceFitter::ofThisThread();
-		SurfaceElement                  fit  = own;
-		double                          gate = firstGate;
+		SurfaceElement                  fit    = own;
+		double                          gate   = firstGate;
 		for (int it = 0; it < shapeIterations; ++it, gate = std::max(lastGate, 0.5 * gate)) {
 			same.clear();
 			for (const Index j : near) {
@@ -77,9 +77,9 @@ Creases findCreases(
 {
 	if (cloud.size() == 0 || !(minimum.medianSpacing > 0.0))
 		return {};
-	const double             minAngle = options.minAngle * EIGEN_PI / 180.0;
-	const double             step     = autoSpacing * minimum.medianSpacing;
-	const double             spacing =
+	const double minAngle = options.minAngle * EIGEN_PI / 180.0;
+	const double step     = autoSpacing * minimum.medianSpacing;
+	const double spacing =
 		options.spacing > 0.0 ? std::max(options.spacing, finest * minimum.medianSpacing) : step;
 	const std::vector<Index> order    = shuffledOrder(cloud.positions);
 	PointCloud               shuffled = cloud;
@@ -88,9 +88,9 @@ Creases findCreases(
 		shuffled.normals.col(k)   = cloud.normals.col(order[k]);
 	}
 	const NeighborSearch search(shuffled.positions);
-	const auto           elements = elementsOf(shuffled, search, progress.sub(0.0, 0.3, progressLabel));
-	const CreasePoints   points =
-		findCreasePoints(elements, search, followShare * minAngle, progress.sub(0.3, 0.9, progressLabel));
+	const auto elements       = elementsOf(shuffled, search, progress.sub(0.0, 0.3, progressLabel));
+	const CreasePoints points = findCreasePoints(
+		elements, search, followShare * minAngle, progress.sub(0.3, 0.9, progressLabel));
 	CreaseTracing tracing(points);
 	return creaseNetwork(tracing, tracing.traceAll(step, minAngle), step, spacing);
 }

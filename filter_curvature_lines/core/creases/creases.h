@@ -12,7 +12,8 @@ struct CreaseOptions {
 	// Between the normals of the two faces, degrees. A curve reaches it somewhere; from there it is followed
 	// down to 0.6 times this, as creases fade.
 	double minAngle = 30.0;
-	double spacing  = 0.0; // of the vertices, length, at least 0.05 median point spacings; 0: 0.7 of these
+	// of the vertices, length, at least 0.05 median point spacings; 0: 0.7 of these
+	double spacing = 0.0;
 };
 
 // The normals must keep to one face, as those of a denoised cloud do (robust_denoising.h). A rim is no crease.

@@ -18,12 +18,13 @@ namespace {
 
 constexpr const char* progressLabel = "Estimating curvature";
 
-constexpr Index  minPoints     = 8;
-constexpr double blendRadius   = 0.5;  // of the height radius
-constexpr double sameFace        = 0.8; // dot product of normals
+constexpr Index  minPoints       = 8;
+constexpr double blendRadius     = 0.5;   // of the height radius
+constexpr double sameFace        = 0.8;   // dot product of normals
 constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
 
-PointCloud reordered(const PointCloud& cloud, const Eigen::Matrix3Xd& gate, const std::vector<Index>& order)
+PointCloud
+reordered(const PointCloud& cloud, const Eigen::Matrix3Xd& gate, const std::vector<Index>& order)
 {
 	PointCloud shuffled{Eigen::Matrix3Xd(3, order.size()), Eigen::Matrix3Xd(3, order.size())};
 	for (std::size_t k = 0; k < order.size(); ++k) {
@@ -65,7 +66,8 @@ public:
 		if (scale.normalRadius == 0.0)
 			return;
 		parallelFor(m_anchors.size(), {}, [&](Index a) {
-			if (Zone{&m_userSearch, blendRadius * m_scale.height.radius}.contains(m_anchors.origins().col(a)))
+			if (Zone{&m_userSearch, blendRadius * m_scale.height.radius}.contains(
+					m_anchors.origins().col(a)))
 				if (m_elements[a].valid)
 					m_elements[a] = m_anchors.normalField(m_anchors.elements()[a]);
 		});
@@ -73,7 +75,10 @@ public:
 
 	// `edge` is told where one is near.
 	SurfaceElement
-	at(Index place, const Eigen::Vector3d& position, const Eigen::Vector3d& gate, EdgeNearby& edge) const
+	at(Index                  place,
+	   const Eigen::Vector3d& position,
+	   const Eigen::Vector3d& gate,
+	   EdgeNearby&            edge) const
 	{
 		SurfaceElement element;
 		if (m_anchors.nearEdge(position)) {
@@ -109,7 +114,8 @@ private:
 		return mean / total;
 	}
 
-	SurfaceElement interpolate(const Eigen::Vector3d& position, const Eigen::Vector3d& gate, double jump) const
+	SurfaceElement
+	interpolate(const Eigen::Vector3d& position, const Eigen::Vector3d& gate, double jump) const
 	{
 		thread_local std::vector<Index> nearScratch;
 		thread_local LocalSamples<10>   samplesScratch;
@@ -126,7 +132,7 @@ private:
 				const SurfaceElement& e = m_elements[a];
 				if (!e.valid || (e.normal - normal).norm() > jump)
 					continue;
-				const Eigen::Vector3d d = (m_anchors.origins().col(a) - position) / radius;
+				const Eigen::Vector3d        d = (m_anchors.origins().col(a) - position) / radius;
 				Eigen::Matrix<double, 10, 1> y;
 				y << e.shape(0, 0), e.shape(0, 1), e.shape(0, 2), e.shape(1, 1), e.shape(1, 2),
 					e.shape(2, 2), e.normal, (e.position - position).dot(frame.n);
@@ -144,8 +150,8 @@ private:
 		return result;
 	}
 
-	static Eigen::Matrix3Xd positionsOf(
-		const PointCloud& cloud, const std::vector<std::pair<Index, double>>& users)
+	static Eigen::Matrix3Xd
+	positionsOf(const PointCloud& cloud, const std::vector<std::pair<Index, double>>& users)
 	{
 		Eigen::Matrix3Xd positions(3, users.size());
 		for (std::size_t u = 0; u < users.size(); ++u)
@@ -183,7 +189,8 @@ std::vector<ScaleMixture> mixturesAtPoints(const PointCloud& cloud, const ScaleS
 		const double reach = (selection.positions.col(near.back()) - position).squaredNorm();
 		double       total = 0.0;
 		for (const Index p : near) {
-			const double w = ballKernel((selection.positions.col(p) - position).squaredNorm() / reach) + 1e-9;
+			const double w =
+				ballKernel((selection.positions.col(p) - position).squaredNorm() / reach) + 1e-9;
 			for (const auto& [scale, weight] : selection.mixtures[p].weights)
 				share[scale] += w * weight;
 			mixtures[i].variance += w * selection.mixtures[p].variance;
@@ -215,12 +222,14 @@ AdaptiveSurface adaptiveSurface(
 	if (cloud.size() < minPoints)
 		return surface;
 	const std::vector<Index> order = shuffledOrder(cloud.positions);
-	const Eigen::Matrix3Xd   gate  = gateNormals(cloud, search, progress.sub(0.0, 0.05, progressLabel));
-	const PointSample        sample(reordered(cloud, gate, order));
-	const ScaleSelection     selection = selectScales(sample, options, progress.sub(0.05, 0.7, progressLabel));
-	const Index              n         = cloud.size();
+	const Eigen::Matrix3Xd   gate =
+		gateNormals(cloud, search, progress.sub(0.0, 0.05, progressLabel));
+	const PointSample    sample(reordered(cloud, gate, order));
+	const ScaleSelection selection =
+		selectScales(sample, options, progress.sub(0.05, 0.7, progressLabel));
+	const Index n = cloud.size();
 
-	const auto mixtures = mixturesAtPoints(sample.cloud, selection);
+	const auto          mixtures = mixturesAtPoints(sample.cloud, selection);
 	std::vector<double> shares(n, 0.0);
 	for (int s = 0; s < int(selection.scales.size()); ++s) {
 		std::vector<std::pair<Index, double>> users;
@@ -232,10 +241,9 @@ AdaptiveSurface adaptiveSurface(
 			continue;
 		const CurvatureScale& scale = selection.scales[s];
 		progress.report(0.7 + 0.3 * s / double(selection.scales.size()));
-		const ScaleField field(
-			sample, scale, users, selection.noise, 1.5 * selection.usualRadius);
+		const ScaleField field(sample, scale, users, selection.noise, 1.5 * selection.usualRadius);
 		parallelFor(static_cast<Index>(users.size()), {}, [&](Index u) {
-			const auto [i, share]        = users[u];
+			const auto [i, share] = users[u];
 			EdgeNearby           edge;
 			const SurfaceElement element =
 				field.at(i, sample.cloud.positions.col(i), sample.cloud.normals.col(i), edge);
@@ -276,10 +284,10 @@ AdaptiveSurface adaptiveSurface(
 
 namespace {
 
-constexpr double weightReach   = 3.0;    // local spacings, as the published operating region
-constexpr Index  medianPoints  = 32768;  // whose residuals give a median
+constexpr double weightReach     = 3.0;     // local spacings, as the published operating region
+constexpr Index  medianPoints    = 32768;   // whose residuals give a median
 constexpr double agreementCosine = 0.99985; // of one degree
-constexpr double smallestSigma = 3e-3;
+constexpr double smallestSigma   = 3e-3;
 // The estimate smooths its normals, so the median is small, and the published cut would cut smooth parts.
 constexpr double looseness = 3.0;
 
@@ -292,11 +300,12 @@ void setPrincipal(
 	tangents << frame.u, frame.v;
 	Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
 	eigen.computeDirect(Eigen::Matrix2d(tangents.transpose() * element.shape * tangents));
-	const Eigen::Vector3d normal = element.normal.dot(given) > agreementCosine ? given : element.normal;
-	Eigen::Vector3d       d1     = tangents * eigen.eigenvectors().col(1);
+	const Eigen::Vector3d normal =
+		element.normal.dot(given) > agreementCosine ? given : element.normal;
+	Eigen::Vector3d d1 = tangents * eigen.eigenvectors().col(1);
 	d1 -= d1.dot(normal) * normal;
-	field.k1[i] = eigen.eigenvalues()[1];
-	field.k2[i] = eigen.eigenvalues()[0];
+	field.k1[i]     = eigen.eigenvalues()[1];
+	field.k2[i]     = eigen.eigenvalues()[0];
 	field.d1.col(i) = d1.normalized();
 	field.d2.col(i) = normal.cross(field.d1.col(i)).normalized();
 }
@@ -316,26 +325,30 @@ void setWeights(
 	parallelForPoints(search, progress, [&](Index i) {
 		thread_local std::vector<Index>                    foundScratch;
 		thread_local std::vector<std::pair<double, Index>> nearScratch;
-		auto&                 found = foundScratch;
-		auto&                 near  = nearScratch;
-		const SurfaceElement& own = surface.elements[i];
+		auto&                                              found = foundScratch;
+		auto&                                              near  = nearScratch;
+		const SurfaceElement&                              own   = surface.elements[i];
 		if (!own.valid)
 			return;
 		search.within(cloud.positions.col(i), weightReach * minimum.spacing[i], found);
 		near.clear();
 		for (const Index j : found)
 			if (j != i && surface.elements[j].valid)
-				near.emplace_back((cloud.positions.col(j) - cloud.positions.col(i)).squaredNorm(), j);
+				near.emplace_back(
+					(cloud.positions.col(j) - cloud.positions.col(i)).squaredNorm(), j);
 		if (near.size() > static_cast<std::size_t>(published.maxPoints)) {
 			std::nth_element(near.begin(), near.begin() + published.maxPoints, near.end());
 			near.resize(published.maxPoints);
 		}
-		std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+		std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) {
+			return a.second < b.second;
+		});
 		rows[i].reserve(near.size());
 		residuals[i].reserve(near.size());
 		for (const auto& [squared, j] : near) {
-			const SurfaceElement& other     = surface.elements[j];
-			const Eigen::Vector3d predicted = own.normal + own.shape * (other.position - own.position);
+			const SurfaceElement& other = surface.elements[j];
+			const Eigen::Vector3d predicted =
+				own.normal + own.shape * (other.position - own.position);
 			rows[i].push_back(j);
 			residuals[i].push_back((other.normal - predicted).norm());
 		}
@@ -372,10 +385,10 @@ CurvatureField adaptiveCurvature(
 	const AdaptiveScaleOptions& options,
 	const Progress&             progress)
 {
-	const Index           n       = cloud.size();
+	const Index           n = cloud.size();
 	const AdaptiveSurface surface =
 		adaptiveSurface(cloud, search, options, progress.sub(0.0, 0.95, progressLabel));
-	CurvatureField        field;
+	CurvatureField field;
 	for (auto* values : {&field.k1, &field.k2, &field.error, &field.confidence, &field.height})
 		values->setZero(n);
 	for (auto* vectors : {&field.d1, &field.d2})
@@ -397,14 +410,15 @@ CurvatureField adaptiveCurvature(
 		}
 		setPrincipal(element, given, i, field);
 		field.correctedNormals.col(i) = element.normal;
-		field.height[i]               = element.normal.dot(element.position - cloud.positions.col(i));
+		field.height[i] = element.normal.dot(element.position - cloud.positions.col(i));
 		// Of a symmetric 2 x 2 matrix with independent errors of the same size in every direction, k1 - k2
 		// has two thirds of the variance.
 		field.error[i] = std::sqrt(2.0 / 3.0 * surface.variance[i]);
 		if (field.status[i] == PointStatus::TooFewNeighbors)
 			field.status[i] = PointStatus::Boundary;
 	}
-	setWeights(cloud, search, minimum, surface, field, progress.sub(0.95, 1.0, "Weighing neighbors"));
+	setWeights(
+		cloud, search, minimum, surface, field, progress.sub(0.95, 1.0, "Weighing neighbors"));
 	return field;
 }
 

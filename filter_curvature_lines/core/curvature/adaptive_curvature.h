@@ -12,8 +12,9 @@ namespace curvature_lines {
 struct AdaptiveSurface {
 	std::vector<SurfaceElement> elements; // N; invalid where nothing could be fitted
 	Eigen::VectorXd             radius;   // N, of the largest ball used (length)
-	Eigen::VectorXd             variance; // N, of the shape operator (squared Frobenius norm, 1/length^2)
-	Eigen::VectorXd             feature;  // N, strength of the sharp edge or corner nearby, 0..1
+	// N, of the shape operator (squared Frobenius norm, 1/length^2)
+	Eigen::VectorXd variance;
+	Eigen::VectorXd feature; // N, strength of the sharp edge or corner nearby, 0..1
 };
 
 // Given normals tell the side of the surface only. Same result for any order of the points.

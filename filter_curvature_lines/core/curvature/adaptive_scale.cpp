@@ -18,36 +18,36 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr Index  firstCount   = 42;  // points in the smallest ball
-constexpr Index  smallestCount = 14; // of a tiny cloud
-constexpr Index  countedRadii  = 60;
-constexpr double denseShare    = 0.1;
-constexpr double mostFiner     = 12.0; // levels
-constexpr double ladderStep   = 1.3;
+constexpr Index  firstCount          = 42; // points in the smallest ball
+constexpr Index  smallestCount       = 14; // of a tiny cloud
+constexpr Index  countedRadii        = 60;
+constexpr double denseShare          = 0.1;
+constexpr double mostFiner           = 12.0; // levels
+constexpr double ladderStep          = 1.3;
 constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
 constexpr double largestNormalRadius = 0.36;
-constexpr Index  noisePlaces  = 256;
-constexpr double smoothShare  = 1.0 / 3.0; // of the places, at least, no edge is near
-constexpr int    probeIterations = 3;
-constexpr double largestResidual = 0.2;  // radii, median over probes
-constexpr double clippedResidual = 0.15; // the least a ball within the noisy layer has
-constexpr double rimOffset       = 0.12; // radii: probes with a larger one lie at a rim
-constexpr double trim            = 0.05;
+constexpr Index  noisePlaces         = 256;
+constexpr double smoothShare         = 1.0 / 3.0; // of the places, at least, no edge is near
+constexpr int    probeIterations     = 3;
+constexpr double largestResidual     = 0.2;  // radii, median over probes
+constexpr double clippedResidual     = 0.15; // the least a ball within the noisy layer has
+constexpr double rimOffset           = 0.12; // radii: probes with a larger one lie at a rim
+constexpr double trim                = 0.05;
 // A part of the cloud has a scale of its own if it is this large and its risk falls to this share.
-constexpr Index  minPoolPoints = 1280;
-constexpr Index  minPoolProbes = 32;
-constexpr Index  errorProbes = 24;
-constexpr Index  minComponent = 128; // probes of a component that is a cloud of its own
-constexpr double medianOfChi2 = 0.79;  // over the mean, of three squares
-constexpr Index  poolStride     = 4; // pools of neighbouring probes hardly differ
-constexpr Index  hopelessStride = 32;
-constexpr double hopelessRatio  = 4.0; // the next finer level varies about five times as much
-constexpr double surelyErrors   = 2.0; // standard errors: a bias of more is certain
-constexpr int    biasLevels     = 3; // finer ones it takes to know a bias
-constexpr double switchRatio   = 0.5;
-constexpr double riskExponent  = 4.0;
-constexpr double smallestShare = 0.1; // of the best one's
-constexpr std::size_t maxMixed = 4;
+constexpr Index       minPoolPoints  = 1280;
+constexpr Index       minPoolProbes  = 32;
+constexpr Index       errorProbes    = 24;
+constexpr Index       minComponent   = 128;  // probes of a component that is a cloud of its own
+constexpr double      medianOfChi2   = 0.79; // over the mean, of three squares
+constexpr Index       poolStride     = 4;    // pools of neighbouring probes hardly differ
+constexpr Index       hopelessStride = 32;
+constexpr double      hopelessRatio  = 4.0; // the next finer level varies about five times as much
+constexpr double      surelyErrors   = 2.0; // standard errors: a bias of more is certain
+constexpr int         biasLevels     = 3;   // finer ones it takes to know a bias
+constexpr double      switchRatio    = 0.5;
+constexpr double      riskExponent   = 4.0;
+constexpr double      smallestShare  = 0.1; // of the best one's
+constexpr std::size_t maxMixed       = 4;
 
 struct Family {
 	int    degree;
@@ -61,23 +61,24 @@ using ShapeVector = Eigen::Matrix<double, 6, 1>;
 // The components of a symmetric tensor, so that products of vectors are those of tensors.
 ShapeVector vectorOf(const Eigen::Matrix3d& shape)
 {
-	const double  twice = std::sqrt(2.0);
-	ShapeVector   v;
-	v << shape(0, 0), shape(1, 1), shape(2, 2), twice * shape(0, 1), twice * shape(0, 2), twice * shape(1, 2);
+	const double twice = std::sqrt(2.0);
+	ShapeVector  v;
+	v << shape(0, 0), shape(1, 1), shape(2, 2), twice * shape(0, 1), twice * shape(0, 2),
+		twice * shape(1, 2);
 	return v;
 }
 
 struct ProbeEstimate {
-	ShapeVector     shape    = ShapeVector::Zero();
-	double          residual = 0.0; // radii
-	double          offset   = 0.0;
-	bool            atEdge   = false;
-	bool            valid    = false;
+	ShapeVector shape    = ShapeVector::Zero();
+	double      residual = 0.0; // radii
+	double      offset   = 0.0;
+	bool        atEdge   = false;
+	bool        valid    = false;
 };
 
 // One candidate scale on both halves.
 struct Trial {
-	CurvatureScale                          scale;
+	CurvatureScale                            scale;
 	std::array<std::vector<ProbeEstimate>, 2> halves;
 
 	bool valid(Index probe) const { return halves[0][probe].valid && halves[1][probe].valid; }
@@ -120,7 +121,8 @@ double medianOf(std::vector<double> values)
 // Of a few among many, faster than a selection.
 void largestLast(std::vector<double>& values, std::size_t count)
 {
-	std::partial_sort(values.rbegin(), values.rbegin() + count, values.rend(), std::greater<double>());
+	std::partial_sort(
+		values.rbegin(), values.rbegin() + count, values.rend(), std::greater<double>());
 }
 
 // Risk of every trial, from the terms of the probes in `pool`.
@@ -135,8 +137,7 @@ public:
 		}
 		dropBelowNoise();
 		for (std::size_t c = 0; c < trials.size(); ++c)
-			m_risk.push_back(
-				m_variance[c] < infinity ? m_variance[c] + squaredBias(c) : infinity);
+			m_risk.push_back(m_variance[c] < infinity ? m_variance[c] + squaredBias(c) : infinity);
 	}
 	const std::vector<double>& risk() const { return m_risk; }
 	const std::vector<double>& variance() const { return m_variance; }
@@ -179,7 +180,8 @@ private:
 			m_variance[c]               = infinity;
 			double smallest             = infinity;
 			for (std::size_t q = 0; q < m_trials.size(); ++q)
-				if (m_trials[q].scale.family == scale.family && m_trials[q].scale.level < scale.level)
+				if (m_trials[q].scale.family == scale.family &&
+				    m_trials[q].scale.level < scale.level)
 					smallest = std::min(smallest, m_residual[q]);
 			if (smallest < clippedResidual)
 				continue;
@@ -211,7 +213,7 @@ private:
 		for (const Index p : m_pool)
 			if (trial.valid(p) && finer.valid(p) && (alsoAtEdges || !trial.atEdge(p)))
 				terms.push_back((trial.halves[0][p].shape - finer.halves[0][p].shape)
-									.dot(trial.halves[1][p].shape - finer.halves[1][p].shape));
+				                    .dot(trial.halves[1][p].shape - finer.halves[1][p].shape));
 		if (terms.size() < 8)
 			return {};
 		const auto cut = static_cast<std::size_t>(0.5 * trim * terms.size());
@@ -233,9 +235,9 @@ private:
 	// where it is beyond doubt and more than a half errs there. (Beside an edge it is the finer one that errs.)
 	double squaredBias(std::size_t c) const
 	{
-		const Trial& trial    = m_trials[c];
-		const bool   hasEdges = std::any_of(
-            m_pool.begin(), m_pool.end(), [&](Index p) { return trial.atEdge(p); });
+		const Trial& trial = m_trials[c];
+		const bool   hasEdges =
+			std::any_of(m_pool.begin(), m_pool.end(), [&](Index p) { return trial.atEdge(p); });
 		double sum = 0.0, precision = 0.0, certain = 0.0;
 		for (std::size_t q = 0; q < m_trials.size(); ++q) {
 			const Trial& finer = m_trials[q];
@@ -276,13 +278,15 @@ ScaleMixture mixtureOf(const RiskOfPool& pool)
 	ScaleMixture               mixture;
 	double                     total = 0.0;
 	for (std::size_t c = 0; c < risk.size(); ++c) {
-		const double share = risk[c] > risk[best] ? std::pow(risk[best] / risk[c], riskExponent) : 1.0;
+		const double share =
+			risk[c] > risk[best] ? std::pow(risk[best] / risk[c], riskExponent) : 1.0;
 		if (risk[c] < infinity && share > smallestShare)
 			mixture.weights.emplace_back(int(c), share);
 	}
-	std::stable_sort(mixture.weights.begin(), mixture.weights.end(), [](const auto& a, const auto& b) {
-		return a.second > b.second;
-	});
+	std::stable_sort(
+		mixture.weights.begin(), mixture.weights.end(), [](const auto& a, const auto& b) {
+			return a.second > b.second;
+		});
 	if (mixture.weights.size() > maxMixed)
 		mixture.weights.resize(maxMixed);
 	for (const auto& [c, share] : mixture.weights)
@@ -359,7 +363,7 @@ public:
 	{
 	}
 	const std::vector<Trial>& all() const { return m_trials; }
-	const Eigen::Matrix3Xd&   positions() const { return m_positions; }
+	const Eigen::Matrix3Xd& positions() const { return m_positions; }
 
 	void run(double radius, int level)
 	{
@@ -367,7 +371,8 @@ public:
 		for (int f = 0; f < int(families.size()); ++f)
 			if (f == 0 || families[f].normalRatio * radius < largestNormalRadius)
 				here.push_back(
-					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level}, {}});
+					{{{radius, families[f].degree}, families[f].normalRatio * radius, f, level},
+				     {}});
 		for (int h = 0; h < 2; ++h)
 			runOnHalf(h, radius, here);
 		m_trials.insert(m_trials.end(), here.begin(), here.end());
@@ -430,7 +435,8 @@ private:
 					starts[p].valid = false;
 			}
 			std::unique_ptr<const SurfaceAnchors> anchors;
-			if (trial.scale.normalRadius > 0.0 && (degree == 2 ? ofAnchors.quadric : ofAnchors.quartic))
+			if (trial.scale.normalRadius > 0.0 &&
+			    (degree == 2 ? ofAnchors.quadric : ofAnchors.quartic))
 				anchors = std::make_unique<const SurfaceAnchors>(
 					anchorFits, subsets, trial.scale, m_noise, AnchorDetail::Sketch);
 			trial.halves[h] = estimateProbes(anchors.get(), starts, m_positions, trial.scale);
@@ -465,7 +471,9 @@ private:
 // Probes near a rim speak only if there are hardly others.
 std::vector<Index> innerProbes(const std::vector<Trial>& trials, double middleRadius)
 {
-	const auto   off  = [&](const Trial& t) { return std::abs(std::log(t.scale.height.radius / middleRadius)); };
+	const auto off = [&](const Trial& t) {
+		return std::abs(std::log(t.scale.height.radius / middleRadius));
+	};
 	const Trial* near = nullptr;
 	for (const Trial& trial : trials)
 		if (trial.scale.family == 0 && (!near || off(trial) < off(*near)))
@@ -487,9 +495,10 @@ std::vector<Index> innerProbes(const std::vector<Trial>& trials, double middleRa
 ScaleSelection selectScales(
 	const PointSample& sample, const AdaptiveScaleOptions& options, const Progress& progress)
 {
-	const Index n      = sample.cloud.size();
-	const Index probes = std::min(n, std::clamp<Index>(n / 20, options.minProbes, options.maxProbes));
-	ScaleSelection selection;
+	const Index n = sample.cloud.size();
+	const Index probes =
+		std::min(n, std::clamp<Index>(n / 20, options.minProbes, options.maxProbes));
+	ScaleSelection            selection;
 	const std::vector<double> radii =
 		radiiHolding(sample, std::clamp<Index>(n / 4, smallestCount, firstCount));
 	selection.usualRadius = medianOf(radii);
@@ -497,11 +506,12 @@ ScaleSelection selectScales(
 	const double finer = std::min(
 		mostFiner,
 		std::floor(
-			std::log(selection.usualRadius / quantileOf(radii, denseShare)) / std::log(ladderStep)));
+			std::log(selection.usualRadius / quantileOf(radii, denseShare)) /
+			std::log(ladderStep)));
 	const double smallest =
 		finer > 1.0 ? selection.usualRadius * std::pow(ladderStep, -finer) : selection.usualRadius;
-	const int levels = std::max(
-		1, 1 + int(std::log(largestHeightRadius / smallest) / std::log(ladderStep)));
+	const int levels =
+		std::max(1, 1 + int(std::log(largestHeightRadius / smallest) / std::log(ladderStep)));
 
 	selection.noise = noiseOf(sample, smallest, levels);
 	ScaleTrials run(sample, probes, selection.noise);
@@ -528,7 +538,7 @@ ScaleSelection selectScales(
 		selection.mixtures.assign(1, only);
 	}
 	const std::deque<ProbeComponent> components = connectedComponents(selection.positions, inner);
-	std::vector<Index> componentOf(probes, -1);
+	std::vector<Index>               componentOf(probes, -1);
 	for (std::size_t c = 0; c < components.size(); ++c)
 		for (const Index p : components[c].probes())
 			componentOf[p] = Index(c);
@@ -540,9 +550,9 @@ ScaleSelection selectScales(
 	std::vector<RiskOfPool> risksOf;
 	for (const ProbeComponent& component : components)
 		risksOf.push_back(
-			components.size() > 1 && component.size() >= minComponent ?
-				RiskOfPool(trials, component.probes()) :
-				whole);
+			components.size() > 1 && component.size() >= minComponent
+				? RiskOfPool(trials, component.probes())
+				: whole);
 	Eigen::Matrix3Xd asked(3, (probes + poolStride - 1) / poolStride);
 	for (Index a = 0; a < asked.cols(); ++a)
 		asked.col(a) = selection.positions.col(a * poolStride);

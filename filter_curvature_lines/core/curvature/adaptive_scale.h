@@ -15,16 +15,17 @@ struct AdaptiveScaleOptions {
 
 // How much an estimate at one place relies on each scale.
 struct ScaleMixture {
-	std::vector<std::pair<int, double>> weights;        // (index into ScaleSelection::scales, share), the largest first
+	// (index into ScaleSelection::scales, share), the largest first
+	std::vector<std::pair<int, double>> weights;
 	double                              variance = 0.0; // of the shape operator, 1/length^2
 };
 
 struct ScaleSelection {
-	std::vector<CurvatureScale> scales;    // all candidates
-	Eigen::Matrix3Xd            positions; // where the mixtures hold
-	std::vector<ScaleMixture>   mixtures;  // one per position
-	double                      usualRadius    = 0.0; // of the balls that hold just enough points
-	double                      noise          = 0.0; // standard deviation of heights (length)
+	std::vector<CurvatureScale> scales;            // all candidates
+	Eigen::Matrix3Xd            positions;         // where the mixtures hold
+	std::vector<ScaleMixture>   mixtures;          // one per position
+	double                      usualRadius = 0.0; // of the balls that hold just enough points
+	double                      noise       = 0.0; // standard deviation of heights (length)
 };
 
 // `sample`: shuffled, with gate normals.

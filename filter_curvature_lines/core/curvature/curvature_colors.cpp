@@ -45,8 +45,8 @@ Eigen::Vector3d fromHue(double hue, double saturation)
 
 } // namespace
 
-Eigen::Matrix3Xd curvatureColors(
-	const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double modelRadius)
+Eigen::Matrix3Xd
+curvatureColors(const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double modelRadius)
 {
 	Eigen::Matrix3Xd colors(3, k1.size());
 	if (k1.size() == 0)

@@ -8,7 +8,7 @@ namespace curvature_lines {
 
 // Hue: convex red, saddle green, concave blue; saturation grows with curvedness times the squared scale,
 // taken from the 10th percentile of |k|. Returns 3 x N, 0..1. modelRadius caps the scale on flat shapes.
-Eigen::Matrix3Xd curvatureColors(
-	const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double modelRadius);
+Eigen::Matrix3Xd
+curvatureColors(const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double modelRadius);
 
 } // namespace curvature_lines

@@ -13,9 +13,9 @@ CurvatureField estimateCurvature(
 	const CurvatureOptions&     options,
 	const Progress&             progress)
 {
-	return options.scaleMode == ScaleMode::Adaptive ?
-			   adaptiveCurvature(cloud, search, minimum, options.adaptive, progress) :
-			   robustCurvature(cloud, search, minimum, options.paper, progress);
+	return options.scaleMode == ScaleMode::Adaptive
+	           ? adaptiveCurvature(cloud, search, minimum, options.adaptive, progress)
+	           : robustCurvature(cloud, search, minimum, options.paper, progress);
 }
 
 Eigen::Matrix3Xd surfaceNormals(const CurvatureField& field)

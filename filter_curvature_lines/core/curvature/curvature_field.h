@@ -21,12 +21,12 @@ struct StatisticalWeights {
 };
 
 struct CurvatureField {
-	Eigen::VectorXd  k1, k2;      // N, 1/length, k1 >= k2
-	Eigen::Matrix3Xd d1, d2;      // 3 x N, unit, tangent at cloud.normals
-	Eigen::VectorXd  error;       // N, standard error of k1 - k2 (1/length)
-	Eigen::VectorXd  radius;      // N, radius of the operating region (length)
-	Eigen::VectorXd  confidence;  // N, C_j = sum_i W_i[j] (A09 section 5.1)
-	Eigen::VectorXd  feature;     // N, strength of the sharp edge or corner nearby, 0..1
+	Eigen::VectorXd          k1, k2;     // N, 1/length, k1 >= k2
+	Eigen::Matrix3Xd         d1, d2;     // 3 x N, unit, tangent at cloud.normals
+	Eigen::VectorXd          error;      // N, standard error of k1 - k2 (1/length)
+	Eigen::VectorXd          radius;     // N, radius of the operating region (length)
+	Eigen::VectorXd          confidence; // N, C_j = sum_i W_i[j] (A09 section 5.1)
+	Eigen::VectorXd          feature;    // N, strength of the sharp edge or corner nearby, 0..1
 	std::vector<PointStatus> status;
 	StatisticalWeights       weights;
 	// The affine model's normal at p_i: unit(sum_j W_j (n_j - X d_j)) (A09 end of section 3; R07).
@@ -34,8 +34,8 @@ struct CurvatureField {
 	Eigen::Matrix3Xd correctedNormals; // 3 x N unit
 	// N, height of the surface fitted around p_i above it, along correctedNormals (length): far less noisy than
 	// the point. Empty where none was fitted, or after the points moved.
-	Eigen::VectorXd  height;
-	Index iterations = 0;              // largest number of IRLS iterations any point needed
+	Eigen::VectorXd height;
+	Index           iterations = 0; // largest number of IRLS iterations any point needed
 
 	Index size() const { return static_cast<Index>(k1.size()); }
 };
@@ -48,7 +48,8 @@ void adoptWeights(
 	CurvatureField&                         field);
 
 // The scalars users ask for by name. Zero-safe: plane gives 0 everywhere.
-double shapeIndex(double k1, double k2);  // Koenderink: (2/pi) atan2(k1 + k2, k1 - k2), +1 convex cap, 0 saddle
-double curvedness(double k1, double k2);  // sqrt((k1^2 + k2^2) / 2)
+// Koenderink: (2/pi) atan2(k1 + k2, k1 - k2), +1 convex cap, 0 saddle
+double shapeIndex(double k1, double k2);
+double curvedness(double k1, double k2); // sqrt((k1^2 + k2^2) / 2)
 
 } // namespace curvature_lines

@@ -31,8 +31,8 @@ std::vector<Index> partnersOf(const PointCloud& cloud, const StatisticalWeights&
 	const auto         row   = weights.neighbors[i];
 	const double*      value = weights.values.data() + weights.neighbors.offsets[i];
 	for (Index k = 0; k < row.size(); ++k)
-		if (row[k] != i && value[k] > 0.0
-			&& cloud.normals.col(i).dot(cloud.normals.col(row[k])) > maxNormalCosine)
+		if (row[k] != i && value[k] > 0.0 &&
+		    cloud.normals.col(i).dot(cloud.normals.col(row[k])) > maxNormalCosine)
 			partners.push_back(row[k]);
 	const auto size = static_cast<std::int64_t>(partners.size());
 	if (size > maxPartners) {
@@ -79,7 +79,9 @@ NeighborLists symmetrized(const NeighborLists& lists)
 Eigen::VectorXcd doubledAngles(const Eigen::VectorXd& theta)
 {
 	Eigen::VectorXcd u(theta.size());
-	parallelFor(static_cast<Index>(theta.size()), {}, [&](Index i) { u[i] = std::polar(1.0, 2.0 * theta[i]); });
+	parallelFor(static_cast<Index>(theta.size()), {}, [&](Index i) {
+		u[i] = std::polar(1.0, 2.0 * theta[i]);
+	});
 	return u;
 }
 
@@ -129,12 +131,12 @@ void DirectionEnergy::buildCoupling(
 				continue;
 			}
 			// A row holds the point itself too: the degree is one less than its size.
-			const double w = 1.0 / (row.size() - 1) + 1.0 / (pattern[j].size() - 1);
+			const double       w = 1.0 / (row.size() - 1) + 1.0 / (pattern[j].size() - 1);
 			const TangentFrame other(cloud.normals.col(j));
 			// From the lower index, so that both ends have the same number to the last bit.
-			const double phi  = i < j ? transportAngle(frame, other) : -transportAngle(other, frame);
+			const double phi = i < j ? transportAngle(frame, other) : -transportAngle(other, frame);
 			const double turn = 0.5 * (turning.col(i) + turning.col(j))
-										  .dot(cloud.positions.col(i) - cloud.positions.col(j));
+			                              .dot(cloud.positions.col(i) - cloud.positions.col(j));
 			values[k] = std::complex<float>(-m_alpha * std::polar(w, 2.0 * (phi + turn)));
 			m_totalWeight[i] += w;
 		}
@@ -153,18 +155,19 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 	// u_j.
 	const Eigen::VectorXcd u = doubledAngles(theta);
 	const auto             n = static_cast<Index>(theta.size());
-	Eigen::VectorXd        data(n), agreement(n); // added up in order below, however many threads there are
+	// added up in order below, however many threads there are
+	Eigen::VectorXd data(n), agreement(n);
 	gradient.resize(n);
 	parallelFor(n, {}, [&](Index i) {
 		const Complex turned = u[i] * std::conj(m_u0[i]); // exp(2 i (theta - theta0))
-		Complex       sum    = 0.0; // -alpha sum_j H_ij u_j
+		Complex       sum    = 0.0;                       // -alpha sum_j H_ij u_j
 		for (Hermitian::InnerIterator entry(m_coupling, i); entry; ++entry)
 			if (entry.col() != i)
 				sum += Complex(entry.value()) * u[entry.col()];
 		const Complex pair = std::conj(u[i]) * sum; // -alpha sum_j w_ij exp(-2 i psi_ij)
 		data[i]            = 0.5 * m_omega[i] * (1.0 - turned.real());
 		agreement[i]       = m_alpha * m_totalWeight[i] - pair.real();
-		gradient[i] = (1.0 - m_alpha) * m_omega[i] * turned.imag() + pair.imag();
+		gradient[i]        = (1.0 - m_alpha) * m_omega[i] * turned.imag() + pair.imag();
 	});
 	return (1.0 - m_alpha) * data.sum() - 0.25 * agreement.sum();
 }
@@ -176,8 +179,8 @@ double DirectionEnergy::operator()(const Eigen::VectorXd& theta, Eigen::VectorXd
 // step of the inverse power method towards the smoothest field, started at the input.
 Eigen::VectorXd DirectionEnergy::linearStart() const
 {
-	const auto             n  = static_cast<Index>(m_theta0.size());
-	Eigen::VectorXcf       right(n);
+	const auto       n = static_cast<Index>(m_theta0.size());
+	Eigen::VectorXcf right(n);
 	for (Index i = 0; i < n; ++i)
 		right[i] = std::complex<float>(dataWeight(i) * m_u0[i]);
 	Eigen::ConjugateGradient<Hermitian, Eigen::Lower | Eigen::Upper> solver;
@@ -202,8 +205,9 @@ DirectionSmoothingResult smoothDirections(
 	const Progress&                  progress)
 {
 	const Index           n = cloud.size();
-	const DirectionEnergy energy(cloud, field, options.alpha, progress.sub(0.0, 0.2, "Pairing directions"));
-	const Objective       objective = std::cref(energy);
+	const DirectionEnergy energy(
+		cloud, field, options.alpha, progress.sub(0.0, 0.2, "Pairing directions"));
+	const Objective          objective = std::cref(energy);
 	DirectionSmoothingResult result;
 	Eigen::VectorXd          gradient;
 	Eigen::VectorXd          start = energy.linearStart();
@@ -221,8 +225,8 @@ DirectionSmoothingResult smoothDirections(
 	result.d2.resize(3, n);
 	for (Index i = 0; i < n; ++i) {
 		const TangentFrame frame(cloud.normals.col(i));
-		result.d1.col(i) = frame.toSpace({std::cos(best.x[i]), std::sin(best.x[i])});
-		result.d2.col(i) = frame.n.cross(result.d1.col(i));
+		result.d1.col(i)  = frame.toSpace({std::cos(best.x[i]), std::sin(best.x[i])});
+		result.d2.col(i)  = frame.n.cross(result.d1.col(i));
 		const double turn = best.x[i] - energy.initialAngles()[i];
 		result.meanTurn += std::abs(std::remainder(turn, EIGEN_PI)) / n;
 	}

@@ -17,9 +17,9 @@ struct DirectionSmoothingOptions {
 
 struct DirectionSmoothingResult {
 	Eigen::Matrix3Xd d1, d2; // 3 x N unit, tangent
-	Index  iterations    = 0;
-	double initialEnergy = 0.0, finalEnergy = 0.0;
-	double meanTurn      = 0.0; // mean |angle| to the input directions, radians
+	Index            iterations    = 0;
+	double           initialEnergy = 0.0, finalEnergy = 0.0;
+	double           meanTurn = 0.0; // mean |angle| to the input directions, radians
 };
 
 DirectionSmoothingResult smoothDirections(
@@ -58,10 +58,10 @@ private:
 		const Progress&         progress);
 	double dataWeight(Index i) const; // of the linear start
 
-	double          m_alpha;
-	Eigen::VectorXd m_theta0, m_omega;
-	Eigen::VectorXcd m_u0; // exp(2 i theta0)
-	Eigen::VectorXd m_totalWeight; // sum_j w_ij
+	double           m_alpha;
+	Eigen::VectorXd  m_theta0, m_omega;
+	Eigen::VectorXcd m_u0;          // exp(2 i theta0)
+	Eigen::VectorXd  m_totalWeight; // sum_j w_ij
 	// -alpha w_ij exp(2 i phi_ij), where theta_i - theta_j = phi_ij when parallel; the diagonal, which the energy
 	// does not know, makes it the system of the linear start.
 	Hermitian m_coupling;

@@ -23,8 +23,8 @@ constexpr double oneSided = 0.4;
 constexpr Index  fewest   = 12; // points whose mean tells
 // Measured on a noisy helicoid: at its rim directions are off 25 times as much as inside, e times less with
 // every ninth of the radius of the fit away from it; more doubt than that pays, as errors at rims go together.
-constexpr double rimDoubt  = 80.0;
-constexpr double rimFading = 9.0; // per radius of the fit
+constexpr double rimDoubt       = 80.0;
+constexpr double rimFading      = 9.0; // per radius of the fit
 constexpr double trusted        = 1.5; // doubt of points whose turning speaks for those at rims
 constexpr Index  trustedNearest = 40;
 
@@ -78,8 +78,8 @@ double weightOf(const CurvatureField& field, Index i, double doubtAtRim)
 	const double k1 = field.k1[i], k2 = field.k2[i];
 	const double error  = doubtAtRim * field.error[i];
 	const double square = (k1 - k2) * (k1 - k2);
-	const double doubt  = error > 0.0 ? sureErrors * sureErrors * error * error + square / mostWeight :
-										k1 * k1 + k2 * k2;
+	const double doubt = error > 0.0 ? sureErrors * sureErrors * error * error + square / mostWeight
+	                                 : k1 * k1 + k2 * k2;
 	return doubt > 0.0 ? square / doubt : 0.0;
 }
 
@@ -114,12 +114,13 @@ Vector3d turningAt(
 
 double transportAngle(const TangentFrame& a, const TangentFrame& b)
 {
-	const Vector3d u = a.u - b.n.dot(a.u) / (1.0 + a.n.dot(b.n)) * (a.n + b.n); // a.u rotated into b's plane
+	// a.u rotated into b's plane
+	const Vector3d u = a.u - b.n.dot(a.u) / (1.0 + a.n.dot(b.n)) * (a.n + b.n);
 	return -std::atan2(u.dot(b.v), u.dot(b.u));
 }
 
-DirectionTrust directionTrust(
-	const PointCloud& cloud, const CurvatureField& field, const Eigen::VectorXd& theta)
+DirectionTrust
+directionTrust(const PointCloud& cloud, const CurvatureField& field, const Eigen::VectorXd& theta)
 {
 	const Index               n     = cloud.size();
 	const std::vector<double> doubt = doubtAtRims(cloud, field);
@@ -135,9 +136,9 @@ DirectionTrust directionTrust(
 		return trust;
 	Matrix3Xd positions(3, speakers.size());
 	parallelFor(static_cast<Index>(speakers.size()), {}, [&](Index s) {
-		const Index i          = speakers[s];
-		positions.col(s)       = cloud.positions.col(i);
-		trust.turning.col(i)   = turningAt(cloud, field, theta, trust.weight, i);
+		const Index i        = speakers[s];
+		positions.col(s)     = cloud.positions.col(i);
+		trust.turning.col(i) = turningAt(cloud, field, theta, trust.weight, i);
 	});
 	const NeighborSearch search(positions);
 	parallelFor(n, {}, [&](Index i) {

@@ -18,8 +18,8 @@ struct DirectionTrust {
 };
 
 // `theta`: N, angles of d1 in TangentFrame(n_i).
-DirectionTrust directionTrust(
-	const PointCloud& cloud, const CurvatureField& field, const Eigen::VectorXd& theta);
+DirectionTrust
+directionTrust(const PointCloud& cloud, const CurvatureField& field, const Eigen::VectorXd& theta);
 
 // phi: theta_a - theta_b of parallel directions, after the smallest rotation between the tangent planes. A09
 // measures both angles against the projection of p_a - p_b in each plane. To first order this is the same,

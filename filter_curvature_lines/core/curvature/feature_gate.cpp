@@ -13,14 +13,16 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  minMembers = 5;   // besides p_i
-constexpr double gateFactor = 2.5; // of sigma: farther from the model is another piece of the surface
+constexpr Index minMembers = 5; // besides p_i
+// of sigma: farther from the model is another piece of the surface
+constexpr double gateFactor = 2.5;
 // A point's own sigma counts within these multiples of the common one: below, the gate would cut into
 // plain noise; above, a sigma that a crease inflates would open it.
 constexpr double minScale = 2.0;
 constexpr double maxScale = 3.0;
 constexpr double maxTurn  = 2.0;
-constexpr double minCommonScale = 1e-3; // radians: exact normals still turn by the curvature's own change
+// radians: exact normals still turn by the curvature's own change
+constexpr double minCommonScale = 1e-3;
 // p_i's side may hold less than half of the region at a crease, a third at a corner.
 constexpr double creaseQuantile = 0.3;
 constexpr Index  consenting     = 20;  // neighbours asked about n_i
@@ -51,7 +53,8 @@ double commonCentreScale(const std::vector<CentreFits>& fits)
 	std::vector<double> sigmas;
 	for (const CentreFits& f : fits)
 		if (f.valid)
-			sigmas.push_back(std::min(f.sigmas[1], f.sigmas[2])); // [0] is no median, see fitCentre()
+			// [0] is no median, see fitCentre()
+			sigmas.push_back(std::min(f.sigmas[1], f.sigmas[2]));
 	if (sigmas.empty())
 		return minCommonScale;
 	const auto middle = sigmas.begin() + sigmas.size() / 2;
@@ -83,8 +86,8 @@ CentreFits FeatureGate::fitCentre(
 	return result;
 }
 
-GateResult FeatureGate::select(
-	const OperatingRegion& region, const CentreFits& fits, double commonScale)
+GateResult
+FeatureGate::select(const OperatingRegion& region, const CentreFits& fits, double commonScale)
 {
 	GateResult result;
 	if (!fits.valid) {
@@ -153,7 +156,8 @@ NormalConsensus normalConsensus(const OperatingRegion& region)
 	}
 	const TangentFrame&    frame  = region.frame;
 	const Eigen::Vector3d& normal = region.normals[best];
-	result.normal = (normal.x() * frame.u + normal.y() * frame.v + normal.z() * frame.n).normalized();
+	result.normal =
+		(normal.x() * frame.u + normal.y() * frame.v + normal.z() * frame.n).normalized();
 	return result;
 }
 

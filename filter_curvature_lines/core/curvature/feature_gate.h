@@ -21,9 +21,10 @@ struct CentreFits {
 double commonCentreScale(const std::vector<CentreFits>& fits);
 
 struct GateResult {
-	std::vector<Index> members; // of the region, p_i first, then at least a handful
+	std::vector<Index> members;       // of the region, p_i first, then at least a handful
 	double             consent = 0.0; // share of the region that agrees, 0..1
-	double             cost    = 1.0; // mean Geman-McClure cost of the centre pairs at the common scale
+	// mean Geman-McClure cost of the centre pairs at the common scale
+	double cost = 1.0;
 };
 
 // Holds the scratch of one thread.
@@ -48,8 +49,8 @@ private:
 // What the near neighbours think of n_i. They support a normal when theirs are similar and they lie near
 // its plane through p_i.
 struct NormalConsensus {
-	Eigen::Vector3d normal;             // the neighbour's normal with most support
-	double          ownSupport = 0.0;   // share of the neighbours that support n_i itself, 0..1
+	Eigen::Vector3d normal;           // the neighbour's normal with most support
+	double          ownSupport = 0.0; // share of the neighbours that support n_i itself, 0..1
 };
 NormalConsensus normalConsensus(const OperatingRegion& region);
 

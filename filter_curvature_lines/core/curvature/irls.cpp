@@ -14,8 +14,8 @@ namespace {
 // Anderson's acceleration with one step of memory: re-weighting converges linearly, and where the model goes
 // shows in how the last step differs from this one. The fixed point stays the same. No farther than another
 // step: up to twice the step the quadratic that the weights stand for still falls along it.
-VariationModel furtherOn(
-	const VariationModel& advance, const VariationModel& step, const VariationModel& lastStep)
+VariationModel
+furtherOn(const VariationModel& advance, const VariationModel& step, const VariationModel& lastStep)
 {
 	const VariationModel change  = step - lastStep;
 	const double         squared = change.squaredNorm();
@@ -31,10 +31,11 @@ template<class WeightOf>
 VariationModel solveWeighted(const VariationSamples& samples, const WeightOf& weightOf)
 {
 	const double *pu = samples.pu.data(), *pv = samples.pv.data(), *nu = samples.nu.data(),
-				 *nv = samples.nv.data(), *nw = samples.nw.data(), *geometric = samples.geometric.data();
+				 *nv = samples.nv.data(), *nw = samples.nw.data(),
+				 *geometric = samples.geometric.data();
 	// The three rows of X share one 2 x 2 normal matrix.
-	double uu = 0.0, uv = 0.0, vv = 0.0;
-	double uOfU = 0.0, vOfU = 0.0, uOfV = 0.0, vOfV = 0.0, uOfW = 0.0, vOfW = 0.0;
+	double      uu = 0.0, uv = 0.0, vv = 0.0;
+	double      uOfU = 0.0, vOfU = 0.0, uOfV = 0.0, vOfV = 0.0, uOfW = 0.0, vOfW = 0.0;
 	const Index count = samples.size();
 #pragma omp simd reduction(+ : uu, uv, vv, uOfU, vOfU, uOfV, vOfV, uOfW, vOfW)
 	for (Index s = 0; s < count; ++s) {
@@ -73,7 +74,8 @@ struct GemanMcClure {
 	double perSquaredSigma, limit;
 
 	GemanMcClure(double sigma, const IrlsOptions& options) :
-			perSquaredSigma(options.robust ? 1.0 / (sigma * sigma) : 0.0), limit(options.cut * options.cut)
+			perSquaredSigma(options.robust ? 1.0 / (sigma * sigma) : 0.0),
+			limit(options.cut * options.cut)
 	{
 	}
 	double operator()(double squaredResidual) const
@@ -96,11 +98,7 @@ void VariationSamples::clear()
 }
 
 void VariationSamples::add(
-	Index                  a,
-	Index                  b,
-	const Eigen::Vector2d& dp,
-	const Eigen::Vector3d& dn,
-	double                 geometricWeight)
+	Index a, Index b, const Eigen::Vector2d& dp, const Eigen::Vector3d& dn, double geometricWeight)
 {
 	first.push_back(a);
 	second.push_back(b);
@@ -124,8 +122,8 @@ bool VariationSamples::spanPlane() const
 	return uu * vv - uv * uv > 1e-6 * (uu + vv) * (uu + vv);
 }
 
-VariationModel weightedLeastSquares(
-	const VariationSamples& samples, const std::vector<double>& weights)
+VariationModel
+weightedLeastSquares(const VariationSamples& samples, const std::vector<double>& weights)
 {
 	const double* values = weights.data();
 	return solveWeighted(samples, [=](Index s) { return values[s]; });
@@ -156,11 +154,11 @@ double IrlsSolver::scale(const IrlsOptions& options, double& squaredQuantile)
 	const double   place   = options.quantile * double(count - 1);
 	const double*  squared = m_squared.data();
 	const Selected middle  = selectNear(
-		 squaredQuantile,
-		 count,
-		 [=](int s) { return squared[s]; },
-		 [=](std::size_t counted) { return std::min(static_cast<std::size_t>(place), counted - 1); },
-		 m_scratch);
+        squaredQuantile,
+        count,
+        [=](int s) { return squared[s]; },
+        [=](std::size_t counted) { return std::min(static_cast<std::size_t>(place), counted - 1); },
+        m_scratch);
 	squaredQuantile = middle.value;
 	double value    = std::sqrt(std::max(middle.value, 0.0));
 	// The mean of the two middle residuals when their number is even.
@@ -189,10 +187,12 @@ const IrlsFit& IrlsSolver::fit(
 		if (m_fit.iterations == 0)
 			m_firstQuantile = quantile;
 		const double*        squared = m_squared.data();
-		const VariationModel next    = solveWeighted(samples, [=](Index s) { return weightOf(squared[s]); });
-		const VariationModel step    = next - m_fit.model;
-		const double         change  = step.norm();
-		moving = options.robust && change > std::max(options.tolerance * next.norm(), exactResidual);
+		const VariationModel next =
+			solveWeighted(samples, [=](Index s) { return weightOf(squared[s]); });
+		const VariationModel step   = next - m_fit.model;
+		const double         change = step.norm();
+		moving =
+			options.robust && change > std::max(options.tolerance * next.norm(), exactResidual);
 
 		m_fit.model = next;
 		if (moving && m_fit.iterations > 0)

@@ -46,7 +46,8 @@ void OperatingRegion::collect(
 	const Eigen::Vector3d center = cloud.positions.col(i);
 	radius                       = regionScale * localSpacing;
 	std::vector<Index> found     = search.within(center, radius);
-	const bool         sparse    = static_cast<Index>(found.size()) <= minPoints; // p_i is among them
+	// p_i is among them
+	const bool sparse = static_cast<Index>(found.size()) <= minPoints;
 	if (sparse)
 		found = search.within(center, 2.0 * radius);
 	found.erase(std::remove(found.begin(), found.end(), i), found.end());

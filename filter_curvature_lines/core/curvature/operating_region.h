@@ -15,9 +15,9 @@ struct OperatingRegion {
 	std::vector<Eigen::Vector3d> normals;          // along u, v, n
 	std::vector<double>          heights;          // along n, relative to p_i
 	std::vector<double>          squaredDistances; // to p_i, in space
-	TangentFrame                 frame       = TangentFrame(Eigen::Vector3d::UnitZ());
-	double                       radius      = 1.0; // length
-	double                       spacing     = 1.0; // local spacing, in radii
+	TangentFrame                 frame   = TangentFrame(Eigen::Vector3d::UnitZ());
+	double                       radius  = 1.0; // length
+	double                       spacing = 1.0; // local spacing, in radii
 
 	Index size() const { return static_cast<Index>(points.size()); }
 

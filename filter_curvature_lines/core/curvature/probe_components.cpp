@@ -21,7 +21,8 @@ Eigen::Matrix3Xd columns(const Eigen::Matrix3Xd& positions, const std::vector<In
 } // namespace
 
 ProbeComponent::ProbeComponent(const Eigen::Matrix3Xd& positions, std::vector<Index> probes) :
-		m_probes(std::move(probes)), m_positions(columns(positions, m_probes)), m_search(m_positions)
+		m_probes(std::move(probes)), m_positions(columns(positions, m_probes)),
+		m_search(m_positions)
 {
 }
 

@@ -15,7 +15,7 @@ public:
 	ProbeComponent(const Eigen::Matrix3Xd& positions, std::vector<Index> probes);
 	ProbeComponent(const ProbeComponent&) = delete;
 
-	Index                     size() const { return static_cast<Index>(m_probes.size()); }
+	Index size() const { return static_cast<Index>(m_probes.size()); }
 	const std::vector<Index>& probes() const { return m_probes; }
 	// Probes by increasing distance, at most `count`.
 	std::vector<Index> nearest(const Eigen::Vector3d& position, Index count) const;

@@ -14,21 +14,22 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  minPairs     = 5;
-constexpr Index  minRegion    = 20;
+constexpr Index minPairs  = 5;
+constexpr Index minRegion = 20;
 // Shares: of the near neighbours that support a right normal (at a corner 1/3 do); of the cost of the
 // centre pairs that a better normal may leave, unless less than the third of the region agrees with n_i.
 constexpr double minSupport = 0.25;
 constexpr double costRatio  = 0.85;
 constexpr double minConsent = 0.2;
-constexpr double minAgreement = 0.2; // of the summed weight; below, the corrected normal is a coin toss
+// of the summed weight; below, the corrected normal is a coin toss
+constexpr double minAgreement = 0.2;
 
 struct Estimate {
 	bool                valid = false;
 	VariationModel      model = VariationModel::Zero(); // in units of the region's radius
 	double              sigma = 0.0, radius = 0.0;
 	Index               iterations = 0;
-	Eigen::Vector3d     normal = Eigen::Vector3d::Zero(); // of the frame the model lives in
+	Eigen::Vector3d     normal     = Eigen::Vector3d::Zero(); // of the frame the model lives in
 	Eigen::Vector3d     correctedNormal;
 	std::vector<Index>  neighbors; // a row of StatisticalWeights
 	std::vector<double> weights;
@@ -38,7 +39,7 @@ struct Estimate {
 class PointEstimator {
 public:
 	CentreFits centreFits(Index i, const Eigen::Vector3d& normal);
-	Estimate   estimate(Index i, CentreFits centre, double commonScale);
+	Estimate estimate(Index i, CentreFits centre, double commonScale);
 
 	static PointEstimator& ofThisThread(
 		const PointCloud&             cloud,
@@ -55,12 +56,12 @@ public:
 	}
 
 private:
-	IrlsOptions     irlsOptions() const;
-	void            collectRegion(Index i, const Eigen::Vector3d& normal);
-	void            keepAllMembers();
-	void            passGate(Index i, const CentreFits& centre, double commonScale);
-	VariationModel  start(Index i);
-	void            collectWeights(const IrlsFit& fit, Estimate& estimate);
+	IrlsOptions irlsOptions() const;
+	void collectRegion(Index i, const Eigen::Vector3d& normal);
+	void keepAllMembers();
+	void passGate(Index i, const CentreFits& centre, double commonScale);
+	VariationModel start(Index i);
+	void collectWeights(const IrlsFit& fit, Estimate& estimate);
 	Eigen::Vector3d correctedNormal(const IrlsFit& fit) const;
 
 	const PointCloud*             m_cloud   = nullptr;
@@ -223,15 +224,14 @@ void setPrincipalCurvatures(
 	const Eigen::Matrix2d tensor = 0.5 * (x + x.transpose());
 	Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
 	eigen.computeDirect(tensor);
-	const bool            finite = eigen.eigenvalues().allFinite() && eigen.eigenvectors().allFinite();
+	const bool finite = eigen.eigenvalues().allFinite() && eigen.eigenvectors().allFinite();
 	const Eigen::Vector2d axis =
 		finite ? Eigen::Vector2d(eigen.eigenvectors().col(1)) : Eigen::Vector2d::UnitX();
 	field.k1[i] = finite ? eigen.eigenvalues()[1] : 0.0;
 	field.k2[i] = finite ? eigen.eigenvalues()[0] : 0.0;
 
 	// Tangent at the normal the cloud carries, even where the model was fitted at a better one.
-	field.d1.col(i) =
-		tangential(TangentFrame(estimate.normal).toSpace(axis), TangentFrame(normal));
+	field.d1.col(i) = tangential(TangentFrame(estimate.normal).toSpace(axis), TangentFrame(normal));
 	field.d2.col(i) = normal.cross(field.d1.col(i)).normalized();
 	// Normals are good to sigma; half of the points speak for each direction, over the region's radius.
 	const double supporters = std::max<double>(estimate.neighbors.size(), 1.0);
@@ -247,9 +247,9 @@ CurvatureField robustCurvature(
 	const RobustCurvatureOptions& options,
 	const Progress&               progress)
 {
-	const Index n = cloud.size();
+	const Index n         = cloud.size();
 	const auto  estimator = [&]() -> PointEstimator& {
-		return PointEstimator::ofThisThread(cloud, search, minimum, options);
+        return PointEstimator::ofThisThread(cloud, search, minimum, options);
 	};
 	std::vector<CentreFits> centre(n);
 	if (options.featureGate && options.robust)
@@ -259,7 +259,8 @@ CurvatureField robustCurvature(
 	const double commonScale = commonCentreScale(centre);
 
 	CurvatureField field;
-	for (auto* values : {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence, &field.feature})
+	for (auto* values :
+	     {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence, &field.feature})
 		values->setZero(n);
 	for (auto* vectors : {&field.d1, &field.d2, &field.correctedNormals})
 		vectors->resize(3, n);

@@ -19,17 +19,22 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int    mixedPasses    = 2;   // the second changes what the first leaves by second-order terms only
-constexpr int    optimalPasses  = 5;   // A09: "4-5 iterations"
-constexpr double kernelRatio    = 2.5; // support radius over the width of the smooth kernel
-constexpr double averageRatio   = 4.0; // LOP: theta(r) = exp(-r^2 / (h/4)^2); plain averages shrink as much
+// the second changes what the first leaves by second-order terms only
+constexpr int    mixedPasses   = 2;
+constexpr int    optimalPasses = 5;   // A09: "4-5 iterations"
+constexpr double kernelRatio   = 2.5; // support radius over the width of the smooth kernel
+// LOP: theta(r) = exp(-r^2 / (h/4)^2); plain averages shrink as much
+constexpr double averageRatio   = 4.0;
 constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
-constexpr double maxNormalTurn  = 0.5;  // tangent of the turn by which curvature may correct a normal
-constexpr double flatShare      = 1e-3; // see principalDirection()
-constexpr double slopeRidge     = 0.01; // of the slopes in tensorAt(), against points on a line
-constexpr double noisyShare     = 0.9;  // even if that much of the cloud has no noise, the rest counts
-constexpr double mostNoise      = 2.5;  // over that quantile: four standard deviations
-constexpr double maxBeside      = 1.0;  // kernel widths between c and the mean point that are extrapolated
+// tangent of the turn by which curvature may correct a normal
+constexpr double maxNormalTurn = 0.5;
+constexpr double flatShare     = 1e-3; // see principalDirection()
+constexpr double slopeRidge    = 0.01; // of the slopes in tensorAt(), against points on a line
+// even if that much of the cloud has no noise, the rest counts
+constexpr double noisyShare = 0.9;
+constexpr double mostNoise  = 2.5; // over that quantile: four standard deviations
+// kernel widths between c and the mean point that are extrapolated
+constexpr double maxBeside = 1.0;
 
 // Of the support at hand, one at a time in each thread.
 struct SupportScratch {
@@ -69,9 +74,9 @@ struct SupportScratch {
 CURVATURE_LINES_AVX2_CLONE void squaredDistances(const double* center, SupportScratch& scratch)
 {
 	for (std::size_t k = 0; k < scratch.squaredDistance.size(); k += blockSize) {
-		const Block x = blockAt(&scratch.position[0][k]) - center[0];
-		const Block y = blockAt(&scratch.position[1][k]) - center[1];
-		const Block z = blockAt(&scratch.position[2][k]) - center[2];
+		const Block x                        = blockAt(&scratch.position[0][k]) - center[0];
+		const Block y                        = blockAt(&scratch.position[1][k]) - center[1];
+		const Block z                        = blockAt(&scratch.position[2][k]) - center[2];
 		blockAt(&scratch.squaredDistance[k]) = x * x + y * y + z * z;
 	}
 }
@@ -92,9 +97,10 @@ public:
 	Support(const PointCloud& cloud, const CurvatureField& field, Index closest) :
 			m_cloud(cloud), m_heights(field.height), m_scratch(SupportScratch::ofThisThread())
 	{
-		const NeighborLists::Row row     = field.weights.neighbors[closest];
-		const double* const      weights = field.weights.values.data() + field.weights.neighbors.offsets[closest];
-		const Vector3d           normal  = cloud.normals.col(closest);
+		const NeighborLists::Row row = field.weights.neighbors[closest];
+		const double* const      weights =
+			field.weights.values.data() + field.weights.neighbors.offsets[closest];
+		const Vector3d normal = cloud.normals.col(closest);
 		m_scratch.clear();
 		m_scratch.add(cloud, closest, 1.0);
 		for (Index k = 0; k < row.size(); ++k)
@@ -151,10 +157,11 @@ private:
 
 // Weighted means over the support, seen from c.
 struct Means {
-	double   weight       = 0.0;
-	Vector3d normal       = Vector3d::Zero(); // unit
-	Vector3d offset       = Vector3d::Zero(); // of c from the mean point
-	double   planeHeights = 0.0;              // mean height of c above the points' own tangent planes
+	double   weight = 0.0;
+	Vector3d normal = Vector3d::Zero(); // unit
+	Vector3d offset = Vector3d::Zero(); // of c from the mean point
+	// mean height of c above the points' own tangent planes
+	double planeHeights = 0.0;
 
 	double averageHeight() const { return normal.dot(offset); }
 };
@@ -171,13 +178,14 @@ Means meansAt(
 	Norm              norm = Norm::Squares)
 {
 	Means        means;
-	const double floor = std::max(
-		minRadiusRatio * support.radius(), std::numeric_limits<double>::min());
+	const double floor =
+		std::max(minRadiusRatio * support.radius(), std::numeric_limits<double>::min());
 	support.weigh(c, ratio);
 	support.forEach([&](Index j, double w, double d2) {
 		if (norm == Norm::Absolute)
 			w /= std::max(std::sqrt(d2), floor);
-		const Vector3d p = data == Data::Points ? Vector3d(cloud.positions.col(j)) : support.surfacePoint(j);
+		const Vector3d p =
+			data == Data::Points ? Vector3d(cloud.positions.col(j)) : support.surfacePoint(j);
 		const Vector3d d = c - p;
 		means.weight += w;
 		means.normal += w * cloud.normals.col(j);
@@ -273,10 +281,10 @@ TensorAt tensorAt(
 	const Vector3d&       c,
 	const TangentFrame&   frame)
 {
-	using Values = Eigen::Matrix<double, 1, 6>;
+	using Values                        = Eigen::Matrix<double, 1, 6>;
 	Eigen::Matrix3d             moments = Eigen::Matrix3d::Zero();
 	Eigen::Matrix<double, 3, 6> sums    = Eigen::Matrix<double, 3, 6>::Zero();
-	const double                scale   = support.radius() > 1e-100 ? kernelRatio / support.radius() : 0.0;
+	const double scale = support.radius() > 1e-100 ? kernelRatio / support.radius() : 0.0;
 	support.forEach([&](Index j, double w, double) {
 		if (!hasCurvature(field.status[j]))
 			return;
@@ -298,11 +306,12 @@ TensorAt tensorAt(
 			moments.diagonal().tail<2>().array() += slopeRidge * moments(0, 0);
 			values = (moments.inverse() * sums).row(0);
 		}
-		t = {values[0],
-			 std::max(0.0, values[1]),
-			 values.segment<2>(2).transpose(),
-			 values.tail<2>().transpose(),
-			 beside.allFinite() ? beside : Vector2d(Vector2d::Zero())};
+		t = {
+			values[0],
+			std::max(0.0, values[1]),
+			values.segment<2>(2).transpose(),
+			values.tail<2>().transpose(),
+			beside.allFinite() ? beside : Vector2d(Vector2d::Zero())};
 	}
 	return t;
 }
@@ -322,13 +331,16 @@ Vector3d principalDirection(
 	return tangent.norm() > 1e-6 ? Vector3d(tangent.normalized()) : frame.u;
 }
 
-Vector3d projectedPosition(
-	const PointCloud& cloud, Support& support, const Vector3d& c, ProjectionKind kind)
+Vector3d
+projectedPosition(const PointCloud& cloud, Support& support, const Vector3d& c, ProjectionKind kind)
 {
 	switch (kind) {
-	case ProjectionKind::LocallyOptimal: return projectLocallyOptimal(cloud, support, c);
-	case ProjectionKind::WeightedAverage: return projectToAverage(cloud, support, c);
-	case ProjectionKind::Mixed: break;
+	case ProjectionKind::LocallyOptimal:
+		return projectLocallyOptimal(cloud, support, c);
+	case ProjectionKind::WeightedAverage:
+		return projectToAverage(cloud, support, c);
+	case ProjectionKind::Mixed:
+		break;
 	}
 	return projectMixed(cloud, support, c);
 }
@@ -371,10 +383,10 @@ SurfaceSample projectToSurface(
 	const TangentFrame frame(sample.normal);
 	const TensorAt     t          = tensorAt(cloud, field, support, sample.position, frame);
 	const double       difference = t.deviator.norm();
-	sample.k1 = t.mean + 0.5 * difference;
-	sample.k2 = t.mean - 0.5 * difference;
-	sample.d1 = principalDirection(t, frame, support.radius(), field.d1.col(closest));
-	sample.d2 = sample.normal.cross(sample.d1);
+	sample.k1                     = t.mean + 0.5 * difference;
+	sample.k2                     = t.mean - 0.5 * difference;
+	sample.d1      = principalDirection(t, frame, support.radius(), field.d1.col(closest));
+	sample.d2      = sample.normal.cross(sample.d1);
 	sample.inwards = frame.toSpace(t.beside);
 	return sample;
 }

@@ -8,20 +8,24 @@
 namespace curvature_lines {
 
 enum class ProjectionKind {
-	Mixed,           // Hermite mean of point average and tangent planes: their errors +-k s^2/2 cancel
-	LocallyOptimal,  // A09: LOP, 5 iterations, normal component only (LOP alone slides tangentially)
+	// Hermite mean of point average and tangent planes: their errors +-k s^2/2 cancel
+	Mixed,
+	// A09: LOP, 5 iterations, normal component only (LOP alone slides tangentially)
+	LocallyOptimal,
 	WeightedAverage, // R07
 };
 
 struct SurfaceSample {
 	Eigen::Vector3d position = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
-	Eigen::Vector3d d1 = Eigen::Vector3d::Zero(); // unit principal directions, d2 = n x d1; sign arbitrary
+	// unit principal directions, d2 = n x d1; sign arbitrary
+	Eigen::Vector3d d1 = Eigen::Vector3d::Zero();
 	Eigen::Vector3d d2 = Eigen::Vector3d::Zero();
-	double k1 = 0.0, k2 = 0.0;
+	double          k1 = 0.0, k2 = 0.0;
 	// Tangent, from here to the mean of the points around, in widths of their kernel: rimOffset long at a straight rim
 	// or crease, since points across a crease do not count. 0 where there is only one point.
 	Eigen::Vector3d inwards = Eigen::Vector3d::Zero();
-	Index  closest = -1;     // the cloud point whose statistical weights were used (given by the caller)
+	// the cloud point whose statistical weights were used (given by the caller)
+	Index closest = -1;
 };
 
 constexpr double rimOffset = 0.56; // 1 / sqrt(pi): of a half plane

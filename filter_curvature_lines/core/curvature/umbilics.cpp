@@ -17,16 +17,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double maxNormalCosine   = 0.5;  // 60 degrees: beyond, two points are on different faces
-constexpr double minProjection     = 0.15; // a shorter projected axis is no direction (poles of a sphere)
-constexpr double maxAxisCosine     = 0.9;  // an axis closer to a normal gives way to the second one
-constexpr double flatTurn          = 0.02; // radians over one operating region that count as flat
-constexpr double degenerateAxes    = 0.7;  // variances in this ratio: PCA axes are accidents of sampling
-constexpr double minFourfold       = 0.2;  // of the fourth moment: 0 for a disk, 0.43 for a square
-constexpr double continuedCosine   = 0.82; // 35 degrees from point to point; about a singular one are 60 or more
+constexpr double maxNormalCosine = 0.5; // 60 degrees: beyond, two points are on different faces
+// a shorter projected axis is no direction (poles of a sphere)
+constexpr double minProjection = 0.15;
+constexpr double maxAxisCosine = 0.9;  // an axis closer to a normal gives way to the second one
+constexpr double flatTurn      = 0.02; // radians over one operating region that count as flat
+// variances in this ratio: PCA axes are accidents of sampling
+constexpr double degenerateAxes = 0.7;
+constexpr double minFourfold    = 0.2; // of the fourth moment: 0 for a disk, 0.43 for a square
+// 35 degrees from point to point; about a singular one are 60 or more
+constexpr double continuedCosine = 0.82;
 // Points around a region over the root of those in it: a disk has 3.5, half of one at a rim 2.5.
-constexpr double leastBorder       = 2.0;
-constexpr double minFlatness       = 0.9;  // |mean normal| of a region that has a plane to speak of
+constexpr double leastBorder = 2.0;
+constexpr double minFlatness = 0.9; // |mean normal| of a region that has a plane to speak of
 
 // A09: ratio above the threshold. The ratio is signed, so that minimal surfaces (k1 = -k2) are not
 // umbilic; the other two tests see what a ratio of noisy or vanishing numbers cannot.
@@ -145,7 +148,8 @@ bool clearContinued(
 	bool any = false;
 	for (std::size_t r = 0; r < regions.size(); ++r) {
 		const Region& region = regions[r];
-		if (turns[r] || region.surroundings.size() < leastBorder * std::sqrt(double(region.points.size())))
+		if (turns[r] ||
+		    region.surroundings.size() < leastBorder * std::sqrt(double(region.points.size())))
 			continue;
 		any = true;
 		for (const Index i : region.points)
@@ -261,8 +265,7 @@ UmbilicRegions findUmbilics(
 	const Index       n = cloud.size();
 	std::vector<char> flags(n);
 	for (Index i = 0; i < n; ++i)
-		flags[i] =
-			isUmbilic(field.k1[i], field.k2[i], field.error[i], minimum.spacing[i], options);
+		flags[i] = isUmbilic(field.k1[i], field.k2[i], field.error[i], minimum.spacing[i], options);
 
 	UmbilicRegions result;
 	result.umbilic = medianFiltered(flags, cloud, minimum);

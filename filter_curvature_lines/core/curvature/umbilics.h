@@ -7,21 +7,23 @@
 namespace curvature_lines {
 
 struct UmbilicOptions {
-	double ratio     = 0.95; // k_small / k_large (signed, by magnitude) above which a point is umbilic
-	double errors    = 2.5;  // also umbilic when |k1 - k2| is below this many standard errors
-	Index  minRegion = 4;    // regions of at least this many points get PCA directions (A09: "more than three")
-	bool   smoothed  = false; // the field's directions are: they lead where they can, see below
+	// k_small / k_large (signed, by magnitude) above which a point is umbilic
+	double ratio  = 0.95;
+	double errors = 2.5; // also umbilic when |k1 - k2| is below this many standard errors
+	// regions of at least this many points get PCA directions (A09: "more than three")
+	Index minRegion = 4;
+	bool  smoothed  = false; // the field's directions are: they lead where they can, see below
 };
 
 struct UmbilicRegions {
-	std::vector<char>  umbilic;  // N
-	std::vector<Index> region;   // N, region id or -1
+	std::vector<char>  umbilic; // N
+	std::vector<Index> region;  // N, region id or -1
 	Index              regions = 0;
 	// PCA directions of every region point (projected eigenvectors of the region and its
 	// non-umbilic neighbours); other points keep the field's.
 	Eigen::Matrix3Xd d1, d2;
 	// Where the projected eigenvector nearly vanishes (poles of a sphere) there is no direction.
-	std::vector<char>  singular; // N
+	std::vector<char> singular; // N
 };
 
 // Same sign and ratio above options.ratio, or flat (both curvatures below 0.02 / (3 h) + 2 errors),

@@ -9,15 +9,15 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double anchorSpacing = 0.18; // in radii
-constexpr double sketchSpacing = 0.22;
-constexpr int anchorIterations = 2;
-constexpr double largestHeight = 0.4;  // radii, of the plane through a ball above its centre
-constexpr double outlierRatio = 4.5;
-constexpr double outlierFloor = 0.02; // radii
-constexpr double fullSupport = 1.0 / 3.0; // mean of the kernel over a disc
-constexpr double leastSupport = 0.2;
-constexpr double supportScatter = 1.5; // five standard deviations of the mean, of one sample
+constexpr double anchorSpacing    = 0.18; // in radii
+constexpr double sketchSpacing    = 0.22;
+constexpr int    anchorIterations = 2;
+constexpr double largestHeight    = 0.4; // radii, of the plane through a ball above its centre
+constexpr double outlierRatio     = 4.5;
+constexpr double outlierFloor     = 0.02;      // radii
+constexpr double fullSupport      = 1.0 / 3.0; // mean of the kernel over a disc
+constexpr double leastSupport     = 0.2;
+constexpr double supportScatter   = 1.5; // five standard deviations of the mean, of one sample
 
 } // namespace
 
@@ -26,7 +26,8 @@ bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, d
 	// The ball of a point off the surface holds points near its rim only, a chance void has some inside.
 	const double scatter = supportScatter / std::sqrt(element.samples + 1.0);
 	return element.support < std::min(leastSupport, fullSupport - scatter) ||
-		(element.position - position).norm() > outlierRatio * element.residual + outlierFloor * radius;
+	       (element.position - position).norm() >
+	           outlierRatio * element.residual + outlierFloor * radius;
 }
 
 HeightFits surfacesAt(
@@ -38,14 +39,14 @@ HeightFits surfacesAt(
 	Degrees                degrees,
 	int                    iterations)
 {
-	const PointSample&  sample = subsets[place];
+	const PointSample&              sample = subsets[place];
 	thread_local std::vector<Index> scratch;
-	std::vector<Index>& near = scratch;
-	LocalSurfaceFitter& fitter = LocalSurfaceFitter::ofThisThread();
-	const auto planeAt = [&](const Eigen::Vector3d& center, double r) {
-		sample.search.within(center, r, near);
-		fitter.takeBall(sample.cloud, near, center, r);
-		return fitter.plane(gateNormal);
+	std::vector<Index>&             near    = scratch;
+	LocalSurfaceFitter&             fitter  = LocalSurfaceFitter::ofThisThread();
+	const auto                      planeAt = [&](const Eigen::Vector3d& center, double r) {
+        sample.search.within(center, r, near);
+        fitter.takeBall(sample.cloud, near, center, r);
+        return fitter.plane(gateNormal);
 	};
 	BallPlane plane = planeAt(position, radius);
 	// The ball of a point off the surface holds a slanted cut of it.
@@ -76,8 +77,14 @@ SurfaceElement surfaceAt(
 	int                    iterations)
 {
 	return surfacesAt(
-			   subsets, place, position, gateNormal, scale.radius, Degrees::only(scale.degree), iterations)
-		.of(scale.degree);
+			   subsets,
+			   place,
+			   position,
+			   gateNormal,
+			   scale.radius,
+			   Degrees::only(scale.degree),
+			   iterations)
+	    .of(scale.degree);
 }
 
 bool Zone::contains(const Eigen::Vector3d& position) const
@@ -93,7 +100,7 @@ AnchorFits fitAnchors(
 	AnchorDetail        detail,
 	const Zone&         zone)
 {
-	const double spacing = detail == AnchorDetail::Sketch ? sketchSpacing : anchorSpacing;
+	const double spacing          = detail == AnchorDetail::Sketch ? sketchSpacing : anchorSpacing;
 	const std::vector<Index> kept = thin(sample, spacing * radius);
 	std::vector<Index>       placeOf(sample.cloud.size(), -1);
 	for (std::size_t place = 0; place < kept.size(); ++place)
@@ -112,7 +119,13 @@ AnchorFits fitAnchors(
 		const Index           i        = visited[a];
 		const Eigen::Vector3d position = sample.cloud.positions.col(i);
 		HeightFits            fits     = surfacesAt(
-            subsets, placeOf[i], position, sample.cloud.normals.col(i), radius, degrees, anchorIterations);
+            subsets,
+            placeOf[i],
+            position,
+            sample.cloud.normals.col(i),
+            radius,
+            degrees,
+            anchorIterations);
 		for (SurfaceElement* element : {&fits.quadric, &fits.quartic})
 			if (element->valid && isOutlier(*element, position, radius)) {
 				element->valid = false;

@@ -59,9 +59,10 @@ struct Zone {
 
 // Height fits at a thinned set of points, in spatial order.
 struct AnchorFits {
-	Eigen::Matrix3Xd        points; // what was fitted at
-	std::vector<Index>      places; // of the points in the order of thinning, which is random in space
-	std::vector<HeightFits> fits;   // one per point; outliers have none
+	Eigen::Matrix3Xd points; // what was fitted at
+	// of the points in the order of thinning, which is random in space
+	std::vector<Index>      places;
+	std::vector<HeightFits> fits; // one per point; outliers have none
 	bool                    hasOutliers = false;
 };
 

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using Support = BlendOptions::Support;
 
-constexpr double slabNoise       = 3.0;  // noise units that a ball reaches beyond the disk of a patch
+// noise units that a ball reaches beyond the disk of a patch
+constexpr double slabNoise       = 3.0;
 constexpr double minBent         = 0.35; // cosine; arcs stay well below a quarter of a turn
 constexpr double maxGate         = 2.0;  // gate widths
 constexpr double heightCutoff    = 5.0;  // noise units
@@ -36,7 +37,8 @@ struct Scratch {
 	}
 };
 
-void gather(const BlendInput& input, const BlendGuide& guide, Index center, double reach, Scratch& scratch)
+void gather(
+	const BlendInput& input, const BlendGuide& guide, Index center, double reach, Scratch& scratch)
 {
 	const Vector3d origin = guide.positions.col(center);
 	guide.search.within(origin, reach, scratch.near);
@@ -77,7 +79,7 @@ double arcOverChord(double cosine)
 {
 	const double s = 0.5 * std::max(0.0, 1.0 - cosine); // z^2
 	return (15015.0 - s * (17710.0 - s * (4648.0 - 80.0 * s))) /
-		   (15015.0 - s * (27720.0 - s * (15120.0 - 2240.0 * s)));
+	       (15015.0 - s * (27720.0 - s * (15120.0 - 2240.0 * s)));
 }
 
 void addSample(Scratch& scratch, double x, double y, double z, double w)
@@ -137,9 +139,10 @@ bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 			if (x * x + y * y >= shrink * shrink)
 				continue;
 			const Eigen::Vector2d slope = patch.gradient(x, y);
-			const Vector3d predicted(-slope.x(), -slope.y(), 1.0);
-			const double   gate = gateWeight(
-                (scratch.normal[k] - predicted / std::sqrt(1.0 + slope.squaredNorm())).squaredNorm() /
+			const Vector3d        predicted(-slope.x(), -slope.y(), 1.0);
+			const double          gate = gateWeight(
+                (scratch.normal[k] - predicted / std::sqrt(1.0 + slope.squaredNorm()))
+                    .squaredNorm() /
                 (width * width));
 			if (gate <= 0.0)
 				continue;
@@ -185,7 +188,8 @@ double farthestMove(const BlendInput& input, Index i)
 // Guides of the other supports have left the noise behind.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
-	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i]) : radius;
+	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i])
+	                                        : radius;
 }
 
 double gateWeight(double e2)
@@ -194,7 +198,10 @@ double gateWeight(double e2)
 }
 
 Sight bentSight(
-	const SurfacePatch& patch, const Vector3d& height, const Vector3d& place, const Vector3d& normal)
+	const SurfacePatch& patch,
+	const Vector3d&     height,
+	const Vector3d&     place,
+	const Vector3d&     normal)
 {
 	const double cosine = normal.dot(patch.frame.n);
 	if (cosine < minBent)
@@ -204,7 +211,8 @@ Sight bentSight(
 	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
 }
 
-BlendPatch patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i)
+BlendPatch
+patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i)
 {
 	BlendPatch    patch;
 	Scratch&      scratch = Scratch::ofThisThread();
@@ -213,12 +221,12 @@ BlendPatch patchAt(const BlendInput& input, const BlendGuide& guide, const Blend
 	SurfacePatch& surface = patch.surface;
 	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
 	gather(input, guide, i, reach, scratch);
-	const bool fitted =
-		options.support == Support::Free  ? fitFree(surface, reach, scratch) :
-		options.support == Support::Gated ? fitGated(surface, input.noise[i], options.gateWidth, scratch) :
-											fitBent(surface, scratch);
-	surface.valid = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
-	patch.purity  = purityOf(surface, input.noise[i], options.purity);
+	const bool fitted = options.support == Support::Free ? fitFree(surface, reach, scratch)
+	                    : options.support == Support::Gated
+	                        ? fitGated(surface, input.noise[i], options.gateWidth, scratch)
+	                        : fitBent(surface, scratch);
+	surface.valid     = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
+	patch.purity      = purityOf(surface, input.noise[i], options.purity);
 	return patch;
 }
 

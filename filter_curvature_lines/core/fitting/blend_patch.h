@@ -14,17 +14,19 @@ namespace curvature_lines {
 // What patches are fitted to. Columns are in `order`; the first of its shuffled order are the centres of
 // patches.
 struct BlendInput {
-	SpatialOrder        order;
-	PointCloud          cloud;
-	std::vector<double> spacing; // per point, smooth: side of the square that holds one point, a length
-	std::vector<double> noise;   // per point: standard deviation of the positions, a length
+	SpatialOrder order;
+	PointCloud   cloud;
+	// per point, smooth: side of the square that holds one point, a length
+	std::vector<double> spacing;
+	std::vector<double> noise; // per point: standard deviation of the positions, a length
 };
 
 // Where the points are thought to be: tells frames and gates. Heights are always those of the input,
 // so that repeated passes do not shrink the surface.
 struct BlendGuide {
 	BlendGuide(Eigen::Matrix3Xd guidePositions, Eigen::Matrix3Xd guideNormals) :
-			positions(std::move(guidePositions)), normals(std::move(guideNormals)), search(positions)
+			positions(std::move(guidePositions)), normals(std::move(guideNormals)),
+			search(positions)
 	{
 	}
 	BlendGuide(const BlendGuide&)            = delete; // the search refers to the positions
@@ -38,15 +40,16 @@ struct BlendOptions {
 	enum class Support {
 		Free,  // frame by principal components; normals only tell sheets apart. For noisy guides
 		Gated, // points whose guide normals vary linearly with the place belong: stops at edges
-		Bent,  // arc lengths along the guide instead of their projection: reaches further round a bend
+		// arc lengths along the guide instead of their projection: reaches further round a bend
+		Bent,
 	};
-	Support support    = Support::Free;
+	Support             support = Support::Free;
 	std::vector<double> radius; // per point, of a patch there, smooth: a length
-	double  gateWidth  = 0.7; // Gated: deviation from the linear normal that quarters a weight
-	double  purity     = 0.0; // how fast a patch loses weight as its residuals exceed the noise
-	double  acceptance = 0.0; // residual, in noise units, that quarters a weight; 0: any is taken
-	bool    edges      = false; // Gated: points beside an edge also see the faces beyond it
-	double  overlap    = 38.0; // patches that cover a point, on average
+	double gateWidth  = 0.7;    // Gated: deviation from the linear normal that quarters a weight
+	double purity     = 0.0;    // how fast a patch loses weight as its residuals exceed the noise
+	double acceptance = 0.0;    // residual, in noise units, that quarters a weight; 0: any is taken
+	bool   edges      = false;  // Gated: points beside an edge also see the faces beyond it
+	double overlap    = 38.0;   // patches that cover a point, on average
 };
 
 // The patch and how far its residuals fit the noise, 0..1.
@@ -55,7 +58,8 @@ struct BlendPatch {
 	double       purity = 1.0;
 };
 
-BlendPatch patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i);
+BlendPatch
+patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i);
 
 // Where a bent patch sees a point: x and y from the guide, z from the input.
 struct Sight {

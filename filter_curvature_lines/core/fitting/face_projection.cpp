@@ -39,7 +39,7 @@ struct Corner {
 // Least move onto the planes of `subset`; false when that is not the projection onto the corner.
 bool project(const Corner& corner, unsigned subset, Vector3d& move)
 {
-	constexpr double tolerance = 1e-12;
+	constexpr double                                  tolerance = 1e-12;
 	Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> active(3, 0);
 	Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> heights(0);
 	for (int k = 0; k < corner.count; ++k)
@@ -55,7 +55,7 @@ bool project(const Corner& corner, unsigned subset, Vector3d& move)
 	const auto pull = gram.ldlt().solve(heights).eval();
 	if (pull.minCoeff() < 0.0)
 		return false;
-	move = -active * pull;
+	move               = -active * pull;
 	const double slack = tolerance + 1e-9 * heights.norm();
 	for (int k = 0; k < corner.count; ++k)
 		if (corner.normals.col(k).dot(move) + corner.heights[k] > slack)
@@ -88,7 +88,7 @@ Vector3d moveOntoFaces(const LocalFaces& faces)
 	if (corner.heights[nearest] <= 0.0)
 		return -corner.heights[nearest] * corner.normals.col(nearest);
 	double   least = std::numeric_limits<double>::infinity();
-	Vector3d best = own, move;
+	Vector3d best  = own, move;
 	for (unsigned subset = 1; subset < 1u << corner.count; ++subset)
 		if (project(corner, subset, move) && move.squaredNorm() < least) {
 			least = move.squaredNorm();

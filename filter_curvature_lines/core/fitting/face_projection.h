@@ -16,9 +16,9 @@ struct LocalFace {
 };
 
 struct LocalFaces {
-	static constexpr int     capacity = 3;
+	static constexpr int            capacity = 3;
 	std::array<LocalFace, capacity> face; // the first is the point's own
-	int                      count = 0;
+	int                             count = 0;
 };
 
 // The move from the point to the nearest place on the faces, cut off where they meet: the surface of

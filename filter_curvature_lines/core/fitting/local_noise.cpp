@@ -12,12 +12,12 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  noisePlaces     = 500;
-constexpr Index  noiseNeighbors  = 8;    // places that a point takes its noise from
-constexpr Index  noisePatches    = 300;  // a place takes its noise from,
-constexpr double noiseShare      = 0.04; // or this share of all
-constexpr double minNoise        = 1e-10; // a length: of exact samples
-constexpr Index  fewPoints       = 1000;
+constexpr Index  noisePlaces    = 500;
+constexpr Index  noiseNeighbors = 8;     // places that a point takes its noise from
+constexpr Index  noisePatches   = 300;   // a place takes its noise from,
+constexpr double noiseShare     = 0.04;  // or this share of all
+constexpr double minNoise       = 1e-10; // a length: of exact samples
+constexpr Index  fewPoints      = 1000;
 
 // A lower quantile, and how many standard deviations it is below the mean of a normal distribution.
 struct Quantile {
@@ -30,18 +30,20 @@ constexpr Quantile quartile = {0.25, 0.6744898}, tenth = {0.1, 1.2815516};
 
 // Noise varies over a cloud. The lower quantile of many patches belongs to those off the edges; chi-squared
 // quantile by Wilson and Hilferty.
-std::vector<double> localNoise(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
+std::vector<double>
+localNoise(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
 {
 	if (blend.center.empty())
 		return std::vector<double>(cloud.size(), minNoise);
-	const double degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
-	const double scatter  = 2.0 / (9.0 * degrees);
-	const auto   low      = cloud.size() < fewPoints ? tenth : quartile;
-	const double expected = std::pow(1.0 - scatter - low.below * std::sqrt(scatter), 3);
-	const Eigen::Matrix3Xd   centers = columnsOf(cloud.positions, blend.center);
+	const double             degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
+	const double             scatter  = 2.0 / (9.0 * degrees);
+	const auto               low      = cloud.size() < fewPoints ? tenth : quartile;
+	const double             expected = std::pow(1.0 - scatter - low.below * std::sqrt(scatter), 3);
+	const Eigen::Matrix3Xd   centers  = columnsOf(cloud.positions, blend.center);
 	const NeighborSearch     search(centers);
 	const std::vector<Index> places = order.sample(noisePlaces);
-	const Index count = std::max(noisePatches, static_cast<Index>(noiseShare * double(blend.center.size())));
+	const Index              count =
+		std::max(noisePatches, static_cast<Index>(noiseShare * double(blend.center.size())));
 	std::vector<double> noise(places.size());
 	parallelFor(static_cast<Index>(places.size()), {}, [&](Index k) {
 		std::vector<double> variance;

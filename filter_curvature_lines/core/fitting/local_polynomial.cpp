@@ -14,17 +14,17 @@ template<int Degree, int Values>
 struct Moments {
 	double weighted[2 * Degree + 1][2 * Degree + 1]; // sum w x^a y^b
 	double products[Degree + 1][Degree + 1][Values]; // sum w x^a y^b value
-	double squares; // sum w |value|^2
+	double squares;                                  // sum w |value|^2
 };
 
 template<int Degree, int Values>
-CURVATURE_LINES_AVX2_CLONE void accumulate(
-	const LocalSamples<Values>& samples, int padded, Moments<Degree, Values>& result)
+CURVATURE_LINES_AVX2_CLONE void
+accumulate(const LocalSamples<Values>& samples, int padded, Moments<Degree, Values>& result)
 {
-	constexpr int highest = 2 * Degree;
-	Block         weighted[highest + 1][highest + 1] = {};
+	constexpr int highest                                  = 2 * Degree;
+	Block         weighted[highest + 1][highest + 1]       = {};
 	Block         products[Degree + 1][Degree + 1][Values] = {};
-	Block         squares = {};
+	Block         squares                                  = {};
 	for (int s = 0; s < padded; s += blockSize) {
 		const Block x = blockAt(&samples.x[s]);
 		const Block y = blockAt(&samples.y[s]);
@@ -102,12 +102,12 @@ PolynomialFit<Degree, Values> fitPolynomial(LocalSamples<Values>& samples)
 	return fit;
 }
 
-template PolynomialFit<1, 1>  fitPolynomial(LocalSamples<1>&);
-template PolynomialFit<2, 1>  fitPolynomial(LocalSamples<1>&);
-template PolynomialFit<4, 1>  fitPolynomial(LocalSamples<1>&);
-template PolynomialFit<1, 3>  fitPolynomial(LocalSamples<3>&);
-template PolynomialFit<2, 3>  fitPolynomial(LocalSamples<3>&);
-template PolynomialFit<3, 3>  fitPolynomial(LocalSamples<3>&);
+template PolynomialFit<1, 1> fitPolynomial(LocalSamples<1>&);
+template PolynomialFit<2, 1> fitPolynomial(LocalSamples<1>&);
+template PolynomialFit<4, 1> fitPolynomial(LocalSamples<1>&);
+template PolynomialFit<1, 3> fitPolynomial(LocalSamples<3>&);
+template PolynomialFit<2, 3> fitPolynomial(LocalSamples<3>&);
+template PolynomialFit<3, 3> fitPolynomial(LocalSamples<3>&);
 template PolynomialFit<2, 10> fitPolynomial(LocalSamples<10>&);
 
 } // namespace curvature_lines

@@ -42,7 +42,7 @@ public:
 		reserve(n);
 		m_size = int(n);
 	}
-	int  size() const { return m_size; }
+	int size() const { return m_size; }
 	void add(double px, double py, double w, const Eigen::Matrix<double, Values, 1>& values)
 	{
 		x[m_size]      = px;

@@ -18,16 +18,16 @@ constexpr int spareSamples = 3;
 
 // A residual this many RMS away hardly occurs among a few hundred Gaussian ones: only then is the fit worth
 // repeating with robust weights. Beyond `cut` scales a sample counts no more.
-constexpr double suspicious   = 3.5;
-constexpr double madFactor    = 1.4826;
-constexpr double robustScale  = 2.5;
-constexpr double cut          = 5.0;
+constexpr double suspicious  = 3.5;
+constexpr double madFactor   = 1.4826;
+constexpr double robustScale = 2.5;
+constexpr double cut         = 5.0;
 
 // II = -hessian / sqrt(1 + |gradient|^2) of a height over the plane of `frame`, as a tensor in space.
 Eigen::Matrix3d shapeOfHeight(
 	const TangentFrame& frame, const Eigen::Vector2d& gradient, const Eigen::Matrix2d& hessian)
 {
-	const double          w = std::sqrt(1.0 + gradient.squaredNorm());
+	const double                w = std::sqrt(1.0 + gradient.squaredNorm());
 	Eigen::Matrix<double, 3, 2> tangents;
 	tangents.col(0) = frame.u + gradient.x() * frame.n;
 	tangents.col(1) = frame.v + gradient.y() * frame.n;
@@ -51,13 +51,16 @@ struct PlaneMoments {
 	double offset[3], normal[3], square[6];
 };
 
-CURVATURE_LINES_AVX2_CLONE void sumUp(const BallPoints& ball, const double* side, PlaneMoments& moments)
+CURVATURE_LINES_AVX2_CLONE void
+sumUp(const BallPoints& ball, const double* side, PlaneMoments& moments)
 {
 	const Block zero   = {};
 	Block       weight = {}, offset[3] = {}, normal[3] = {}, square[6] = {};
 	for (int s = 0; s < ball.size; s += blockSize) {
 		const Block d[3] = {
-			blockAt(&ball.position[0][s]), blockAt(&ball.position[1][s]), blockAt(&ball.position[2][s])};
+			blockAt(&ball.position[0][s]),
+			blockAt(&ball.position[1][s]),
+			blockAt(&ball.position[2][s])};
 		const Block n[3] = {
 			blockAt(&ball.normal[0][s]), blockAt(&ball.normal[1][s]), blockAt(&ball.normal[2][s])};
 		const Block along = n[0] * side[0] + n[1] * side[1] + n[2] * side[2];
@@ -109,7 +112,8 @@ CURVATURE_LINES_AVX2_CLONE int toHeights(
 		const Block y     = blockAt(&ball.position[1][s]) - frame.origin[1];
 		const Block z     = blockAt(&ball.position[2][s]) - frame.origin[2];
 		const Block along = blockAt(&ball.normal[0][s]) * frame.n[0] +
-			blockAt(&ball.normal[1][s]) * frame.n[1] + blockAt(&ball.normal[2][s]) * frame.n[2];
+		                    blockAt(&ball.normal[1][s]) * frame.n[1] +
+		                    blockAt(&ball.normal[2][s]) * frame.n[2];
 		Block w;
 		kernelOf(x * x + y * y + z * z, w);
 		w = along < 0.0 ? zero : w * blockAt(&robust[s]);
@@ -241,7 +245,8 @@ BallPlane LocalSurfaceFitter::plane(const Eigen::Vector3d& normal) const
 	Eigen::Matrix3d       covariance;
 	for (int r = 0, m = 0; r < 3; ++r)
 		for (int c = 0; c <= r; ++c, ++m)
-			covariance(r, c) = covariance(c, r) = moments.square[m] / moments.weight - mean[r] * mean[c];
+			covariance(r, c) = covariance(c, r) =
+				moments.square[m] / moments.weight - mean[r] * mean[c];
 	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
 	eigen.computeDirect(covariance);
 	const Eigen::Vector3d thinnest = eigen.eigenvectors().col(0);
@@ -256,13 +261,15 @@ BallPlane LocalSurfaceFitter::plane(const Eigen::Vector3d& normal) const
 template<int Values>
 void LocalSurfaceFitter::reweight(double rms, LocalSamples<Values>& samples)
 {
-	const auto counted = [&](int s) { return samples.weight[s] > 0.0 ? m_residuals[s] : -1.0; };
-	const double sigma = madFactor * quantileNear(rms / madFactor, samples.size(), counted, 0.5, m_scratch);
+	const auto   counted = [&](int s) { return samples.weight[s] > 0.0 ? m_residuals[s] : -1.0; };
+	const double sigma =
+		madFactor * quantileNear(rms / madFactor, samples.size(), counted, 0.5, m_scratch);
 	for (int s = 0; s < samples.size(); ++s) {
 		if (!(samples.weight[s] > 0.0))
 			continue;
 		const double t = m_residuals[s] / (robustScale * sigma + 1e-12);
-		const double g = m_residuals[s] > cut * sigma + 1e-12 ? 0.0 : 1.0 / ((1.0 + t * t) * (1.0 + t * t));
+		const double g =
+			m_residuals[s] > cut * sigma + 1e-12 ? 0.0 : 1.0 / ((1.0 + t * t) * (1.0 + t * t));
 		samples.weight[s] *= g / m_robust[s];
 		m_robust[s] = g;
 	}
@@ -282,8 +289,9 @@ bool LocalSurfaceFitter::heightStep(bool lookForOutliers, SurfaceElement& elemen
 	if (!fit.valid)
 		return false;
 	if (lookForOutliers) {
-		const double largest = distances<Degree, 1>(m_heights, fit.coefficients.data(), m_residuals.data());
-		const double rms     = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
+		const double largest =
+			distances<Degree, 1>(m_heights, fit.coefficients.data(), m_residuals.data());
+		const double rms = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
 		if (largest > suspicious * rms) {
 			reweight(rms, m_heights);
 			fit = fitPolynomial<Degree, 1>(m_heights);
@@ -302,14 +310,15 @@ bool LocalSurfaceFitter::heightStep(bool lookForOutliers, SurfaceElement& elemen
 	element.samples      = used;
 	element.support      = fit.sumOfWeights / used;
 	element.residual     = radius * std::sqrt(fit.squaredResidual / (freedom * fit.sumOfWeights));
-	element.offset   = std::hypot(fit.gram(0, 1), fit.gram(0, 2)) / fit.sumOfWeights;
+	element.offset       = std::hypot(fit.gram(0, 1), fit.gram(0, 2)) / fit.sumOfWeights;
 	element.position += c[0] * radius * frame.n;
 	element.normal = (frame.n - c[1] * frame.u - c[2] * frame.v).normalized();
 	element.shape  = shapeOfHeight(frame, gradient, hessian) / radius;
 	return true;
 }
 
-SurfaceElement LocalSurfaceFitter::fitHeights(const Eigen::Vector3d& normal, int degree, int iterations)
+SurfaceElement
+LocalSurfaceFitter::fitHeights(const Eigen::Vector3d& normal, int degree, int iterations)
 {
 	SurfaceElement element;
 	element.position = m_ball.center;
@@ -319,7 +328,8 @@ SurfaceElement LocalSurfaceFitter::fitHeights(const Eigen::Vector3d& normal, int
 	std::fill_n(m_robust.begin(), m_ball.size, 1.0);
 	for (int it = 0; it < iterations; ++it) {
 		const bool lookForOutliers = it > 0 || iterations == 1;
-		if (!(degree == 2 ? heightStep<2>(lookForOutliers, element) : heightStep<4>(lookForOutliers, element)))
+		if (!(degree == 2 ? heightStep<2>(lookForOutliers, element)
+		                  : heightStep<4>(lookForOutliers, element)))
 			return element;
 	}
 	element.valid = true;
@@ -370,9 +380,9 @@ SurfaceElement LocalSurfaceFitter::fitNormals(const SurfaceElement& start, int d
 	element.valid          = true;
 	for (int it = 0; it < 2 && element.valid; ++it) {
 		const bool look = robust && it > 0;
-		element.valid   = degree == 1 ? normalStep<1>(look, element) :
-						  degree == 2 ? normalStep<2>(look, element) :
-										normalStep<3>(look, element);
+		element.valid   = degree == 1   ? normalStep<1>(look, element)
+		                  : degree == 2 ? normalStep<2>(look, element)
+		                                : normalStep<3>(look, element);
 	}
 	return element;
 }

@@ -15,10 +15,11 @@ struct SurfaceElement {
 	Eigen::Vector3d normal   = Eigen::Vector3d::UnitZ(); // unit
 	Eigen::Matrix3d shape    = Eigen::Matrix3d::Zero();  // 1/length
 	double          residual = 0.0; // RMS of the heights that were fitted, length
-	double          offset   = 0.0; // distance of the weighted mean of the points, in radii: 0 inside, large at a rim
-	double          support  = 0.0; // mean weight of the points: 1/3 on a surface, less off it
-	Index           samples  = 0;   // points that were fitted
-	bool            valid    = false;
+	// distance of the weighted mean of the points, in radii: 0 inside, large at a rim
+	double offset  = 0.0;
+	double support = 0.0; // mean weight of the points: 1/3 on a surface, less off it
+	Index  samples = 0;   // points that were fitted
+	bool   valid   = false;
 };
 
 // Weight of a sample at distance d from the centre of a ball of radius r, t2 = (d / r)^2.

@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 using Support = BlendOptions::Support;
 
-constexpr double acrossEdge        = 0.1; // gate: a normal that deviates by 1.5 widths
-constexpr double maxAcrossLeverage = 0.2; // of a patch that tells where the edge is
+constexpr double acrossEdge        = 0.1;  // gate: a normal that deviates by 1.5 widths
+constexpr double maxAcrossLeverage = 0.2;  // of a patch that tells where the edge is
 constexpr double radiusRatio       = 1.25; // of overlapping patches: radii are smooth
 constexpr double minLeverage       = 1e-12;
 constexpr double minRemaining      = 0.02; // of a residual, by a point's own influence
@@ -72,16 +72,16 @@ Prediction predict(
 	const Vector3d&     normal)
 {
 	const SurfacePatch&   surface = patch.surface;
-	const Eigen::Vector2d at = surface.frame.toPlane(place - surface.origin) / surface.radius;
+	const Eigen::Vector2d at      = surface.frame.toPlane(place - surface.origin) / surface.radius;
 	Prediction            p;
 	if (at.squaredNorm() >= 1.0)
 		return p;
 	const SurfacePatch::Local local = surface.toLocal(position);
 	p.direction = p.normal = surface.normal(local.x, local.y);
 	const double width     = options.gateWidth;
-	const double gate      = options.support == Support::Gated ?
-								 gateWeight((normal - p.normal).squaredNorm() / (width * width)) :
-								 double(p.normal.dot(normal) > minOpposing);
+	const double gate      = options.support == Support::Gated
+	                             ? gateWeight((normal - p.normal).squaredNorm() / (width * width))
+	                             : double(p.normal.dot(normal) > minOpposing);
 	p.move = p.residual = surface.residual(local);
 	weigh(p, at.x(), at.y(), surface.leverage(local.x, local.y), gate);
 	return p;
@@ -96,15 +96,16 @@ Prediction predictBent(
 	double            noise)
 {
 	const SurfacePatch& surface = patch.surface;
-	const Sight sight = bentSight(surface, position - surface.origin, place - surface.origin, normal);
-	Prediction  p;
+	const Sight         sight =
+		bentSight(surface, position - surface.origin, place - surface.origin, normal);
+	Prediction p;
 	if (!sight.seen || sight.x * sight.x + sight.y * sight.y >= 1.0)
 		return p;
 	const double cosine = normal.dot(surface.frame.n);
 	// By arc length a height changes with the sine of the slope.
 	const Eigen::Vector2d slope = surface.gradient(sight.x, sight.y);
-	p.normal    = surface.frame.n * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) -
-			   surface.frame.toSpace(slope);
+	p.normal = surface.frame.n * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) -
+	           surface.frame.toSpace(slope);
 	p.direction = normal;
 	p.residual  = (sight.z - surface.height(sight.x, sight.y)) / cosine;
 	// Isotropic noise along a surface of mean curvature H leaves the points sigma^2 H outside on average.
@@ -134,7 +135,7 @@ void addFacesAcross(std::vector<FaceVote>& votes, double width, LocalFaces& face
 								  return a.weight < b.weight;
 							  })->normal;
 		LocalFace      face;
-		double         sum = 0.0;
+		double         sum                   = 0.0;
 		std::vector<FaceVote>::iterator rest = votes.begin();
 		for (const FaceVote& vote : votes) {
 			const double gate = gateWeight((vote.normal - seed).squaredNorm() / (width * width));
@@ -176,7 +177,7 @@ private:
 	const BlendInput&       m_input;
 	const BlendGuide&       m_guide;
 	const BlendOptions&     m_options;
-	std::vector<Index>      m_points;  // of the centres
+	std::vector<Index>      m_points; // of the centres
 	Eigen::Matrix3Xd        m_centers;
 	NeighborSearch          m_search; // of the centres
 	std::vector<BlendPatch> m_patches;
@@ -203,12 +204,8 @@ CoveringPatches::CoveringPatches(
 	const BlendOptions&       options,
 	const std::vector<Index>& targets,
 	const Progress&           progress) :
-		m_input(input),
-		m_guide(guide),
-		m_options(options),
-		m_points(centersOf(input, options)),
-		m_centers(columnsOf(guide.positions, m_points)),
-		m_search(m_centers),
+		m_input(input), m_guide(guide), m_options(options), m_points(centersOf(input, options)),
+		m_centers(columnsOf(guide.positions, m_points)), m_search(m_centers),
 		m_patches(m_centers.cols())
 {
 	std::vector<std::atomic<bool>> used(m_patches.size());
@@ -260,16 +257,13 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 		const BlendPatch& patch = m_patches[j];
 		if (!patch.surface.valid)
 			continue;
-		const Prediction p = m_options.support == Support::Bent ?
-								 predictBent(patch, position, place, normal, noise) :
-								 predict(patch, m_options, position, place, normal);
+		const Prediction p = m_options.support == Support::Bent
+		                         ? predictBent(patch, position, place, normal, noise)
+		                         : predict(patch, m_options, position, place, normal);
 		if (m_options.edges && p.gate < acrossEdge && p.weight > 0.0 &&
-			p.leverage < maxAcrossLeverage)
+		    p.leverage < maxAcrossLeverage)
 			across.push_back(
-				{p.normal,
-				 patch.surface.origin - position,
-				 p.residual,
-				 p.weight * patch.purity});
+				{p.normal, patch.surface.origin - position, p.residual, p.weight * patch.purity});
 		const double w = p.weight * p.gate * patch.purity;
 		if (w <= 0.0)
 			continue;
@@ -312,7 +306,8 @@ PatchBlend blendPatches(
 	const Progress&           progress)
 {
 	const Index           n = input.cloud.size();
-	const CoveringPatches patches(input, guide, options, targets, progress.sub(0.0, 0.7, "Fitting patches"));
+	const CoveringPatches patches(
+		input, guide, options, targets, progress.sub(0.0, 0.7, "Fitting patches"));
 
 	PatchBlend blend;
 	blend.positions = guide.positions;
@@ -320,9 +315,10 @@ PatchBlend blendPatches(
 	blend.residual.assign(n, std::numeric_limits<double>::infinity());
 	blend.purity.assign(n, 0.0);
 	patches.describeResiduals(blend);
-	parallelFor(static_cast<Index>(targets.size()), progress.sub(0.7, 1.0, "Blending patches"), [&](Index t) {
-		patches.blendAt(targets[t], blend);
-	});
+	parallelFor(
+		static_cast<Index>(targets.size()),
+		progress.sub(0.7, 1.0, "Blending patches"),
+		[&](Index t) { patches.blendAt(targets[t], blend); });
 	return blend;
 }
 

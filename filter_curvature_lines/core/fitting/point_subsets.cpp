@@ -23,15 +23,15 @@ PointCloud blockOf(const PointCloud& cloud, Index from, Index to)
 
 PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(sample)
 {
-	const Index        n = sample.cloud.size();
+	const Index         n = sample.cloud.size();
 	std::vector<double> counts;
 	std::vector<Index>  found;
 	for (Index i = 0; i < std::min(n, countedBalls); ++i) {
 		sample.search.within(sample.cloud.positions.col(i), radius, found);
 		counts.push_back(double(found.size()));
 	}
-	const auto subsets =
-		std::clamp(static_cast<Index>(medianInPlace(counts) / samplesPerBall), Index(1), maxSubsets);
+	const auto subsets = std::clamp(
+		static_cast<Index>(medianInPlace(counts) / samplesPerBall), Index(1), maxSubsets);
 	if (subsets == 1)
 		return;
 	// Each keeps the spatial order.
@@ -39,8 +39,10 @@ PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(s
 	for (const Index i : sample.search.spatialOrder())
 		members[(std::int64_t(i + 1) * subsets - 1) / n].push_back(i);
 	for (const std::vector<Index>& subset : members)
-		m_subsets.push_back(std::make_unique<const PointSample>(
-			PointCloud{sample.cloud.positions(Eigen::all, subset), sample.cloud.normals(Eigen::all, subset)}));
+		m_subsets.push_back(
+			std::make_unique<const PointSample>(PointCloud{
+				sample.cloud.positions(Eigen::all, subset),
+				sample.cloud.normals(Eigen::all, subset)}));
 }
 
 std::vector<Index> thin(const PointSample& sample, double distance)

@@ -15,23 +15,25 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  countedAnchors  = 40;
+constexpr Index countedAnchors = 40;
 
 // Residuals this much above that of a good fit, plus this many radii, do not come from noise.
-constexpr double misfitRatio  = 0.15;
-constexpr double misfitErrors = 2.0; // standard errors of a residual
-constexpr double misfitFloor  = 0.004;
-constexpr double minAgreement = 0.35; // share of the anchors within half a radius
-constexpr Index  minAnchors   = 30;
-constexpr double linkStretch  = 1.15;
-constexpr double faceRatio    = 1.25; // noise levels that points may lie off the faces of an edge
-constexpr double faceGain     = 0.9;  // and less than that of one surface,
-constexpr double clearGain    = 0.6;  // much less somewhere near
-constexpr std::size_t clearAgreement = 3; // anchors
-constexpr double faceReach    = 3.0; // radii
-constexpr Index  sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
-constexpr double leastFace    = 0.15; // weight over the largest one's: strays among the anchors have less
-constexpr double largestTurn  = 0.5;                 // of the normal, along which a face is continued
+constexpr double      misfitRatio  = 0.15;
+constexpr double      misfitErrors = 2.0; // standard errors of a residual
+constexpr double      misfitFloor  = 0.004;
+constexpr double      minAgreement = 0.35; // share of the anchors within half a radius
+constexpr Index       minAnchors   = 30;
+constexpr double      linkStretch  = 1.15;
+constexpr double      faceRatio = 1.25; // noise levels that points may lie off the faces of an edge
+constexpr double      faceGain  = 0.9;  // and less than that of one surface,
+constexpr double      clearGain = 0.6;  // much less somewhere near
+constexpr std::size_t clearAgreement = 3;   // anchors
+constexpr double      faceReach      = 3.0; // radii
+constexpr Index sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
+// weight over the largest one's: strays among the anchors have less
+constexpr double leastFace = 0.15;
+// of the normal, along which a face is continued
+constexpr double largestTurn  = 0.5;
 constexpr double spoiltRatio  = 2.0; // residual over the usual one, of a fit that outliers spoilt
 constexpr double smallestJump = 0.35;
 
@@ -48,8 +50,7 @@ SurfaceAnchors::SurfaceAnchors(
 	const PointSubsets&   subsets,
 	const CurvatureScale& scale,
 	double                noise,
-	AnchorDetail          detail) :
-		m_scale(scale), m_hasOutliers(fits.hasOutliers), m_noise(noise)
+	AnchorDetail          detail) : m_scale(scale), m_hasOutliers(fits.hasOutliers), m_noise(noise)
 {
 	std::vector<Index> valid;
 	for (std::size_t a = 0; a < fits.fits.size(); ++a)
@@ -81,10 +82,12 @@ SurfaceAnchors::SurfaceAnchors(
 double SurfaceAnchors::typicalLink() const
 {
 	std::vector<double> distances;
-	std::vector<Index> some(size());
+	std::vector<Index>  some(size());
 	std::iota(some.begin(), some.end(), 0);
 	const auto last = some.begin() + std::min(size(), countedAnchors);
-	std::partial_sort(some.begin(), last, some.end(), [&](Index a, Index b) { return m_places[a] < m_places[b]; });
+	std::partial_sort(some.begin(), last, some.end(), [&](Index a, Index b) {
+		return m_places[a] < m_places[b];
+	});
 	some.erase(last, some.end());
 	for (const Index a : some) {
 		const auto near = m_originSearch->nearest(m_origins.col(a), 9);
@@ -103,12 +106,11 @@ void SurfaceAnchors::flagMisfits()
 	std::vector<char> high(n);
 	for (Index a = 0; a < n; ++a) {
 		// The residual of few samples scatters; the kernel leaves about half of them.
-		const double freedom = std::max(
-			2.0, 0.5 * m_elements[a].samples - monomialCount(m_scale.height.degree));
+		const double freedom =
+			std::max(2.0, 0.5 * m_elements[a].samples - monomialCount(m_scale.height.degree));
 		const double ratio = 1.0 + std::max(misfitRatio, misfitErrors / std::sqrt(2.0 * freedom));
-		high[a] =
-			m_elements[a].residual >
-			ratio * m_scale.usualResidual + misfitFloor * m_scale.height.radius;
+		high[a]            = m_elements[a].residual >
+		          ratio * m_scale.usualResidual + misfitFloor * m_scale.height.radius;
 	}
 	// An edge passes through the balls of many neighbours, chance through that of one.
 	std::vector<Index> near;
@@ -117,7 +119,8 @@ void SurfaceAnchors::flagMisfits()
 			continue;
 		m_originSearch->within(
 			m_origins.col(a), std::max(0.5 * m_scale.height.radius, m_linkLength), near);
-		const auto agree = std::count_if(near.begin(), near.end(), [&](Index b) { return high[b]; });
+		const auto agree =
+			std::count_if(near.begin(), near.end(), [&](Index b) { return high[b]; });
 		if (agree >= 3 && agree >= minAgreement * near.size()) {
 			m_misfit[a] = 1;
 			m_hasEdges  = true;
@@ -170,21 +173,21 @@ std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
 	parallelFor(size(), {}, [&](Index a) {
 		// Faces are asked for where an edge may be near: up to a radius and a link from the misfits.
 		if (m_misfit[a] || m_places[a] % stride != 0 ||
-			!misfitSearch.anyWithin(m_origins.col(a), reach + 1.5 * m_scale.height.radius))
+		    !misfitSearch.anyWithin(m_origins.col(a), reach + 1.5 * m_scale.height.radius))
 			return;
 		m_faces[a] = m_scale.normalRadius > 0.0 ? normalField(m_elements[a]) : m_elements[a];
 	});
 	std::vector<SurfaceElement> continued(size());
 	parallelFor(static_cast<Index>(misfits.size()), {}, [&](Index k) {
 		// A bend that is merely too tight for the radius is no edge: faces continued into it do not fit.
-		const Index             a        = misfits[k];
-		const Eigen::Vector3d   position = m_origins.col(a);
-		std::vector<Face>       faces    = facesAround(position);
+		const Index           a        = misfits[k];
+		const Eigen::Vector3d position = m_origins.col(a);
+		std::vector<Face>     faces    = facesAround(position);
 		if (faces.size() < 2)
 			return;
 		const double misfit = misfitOfFaces(subsets[m_places[a]], position, faces);
 		if (misfit < faceRatio * m_noise + misfitFloor * m_scale.height.radius &&
-			misfit < gain * m_elements[a].residual)
+		    misfit < gain * m_elements[a].residual)
 			continued[a] = nearestFace(position, std::move(faces), nullptr);
 	});
 	return continued;
@@ -214,8 +217,9 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets, AnchorDetail det
 		if (m_misfit[a])
 			misfits.push_back(a);
 	// Noise makes a bend look like an edge here and there; where one is, some balls leave no doubt.
-	const std::vector<SurfaceElement> clear = continuedTo(misfits, subsets, sketchStride, clearGain);
-	std::vector<Index>                found, atEdges;
+	const std::vector<SurfaceElement> clear =
+		continuedTo(misfits, subsets, sketchStride, clearGain);
+	std::vector<Index> found, atEdges;
 	for (const Index a : misfits)
 		if (clear[a].valid)
 			found.push_back(a);
@@ -232,7 +236,7 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets, AnchorDetail det
 	for (Index a = 0; a < size(); ++a) {
 		const NeighborLists::Row row = m_links[a];
 		if (m_misfit[a] && !continued[a].valid &&
-			std::any_of(row.begin(), row.end(), [&](Index b) { return continued[b].valid; }))
+		    std::any_of(row.begin(), row.end(), [&](Index b) { return continued[b].valid; }))
 			m_elements[a].valid = false;
 	}
 	m_hasEdges = false;
@@ -275,9 +279,9 @@ bool SurfaceAnchors::nearEdge(const Eigen::Vector3d& position) const
 // edge, on the face it is highest above, at a concave one on the face it is lowest above.
 double SurfaceAnchors::nearness(Meeting meeting, double height)
 {
-	return meeting == Meeting::Convex  ? -height :
-		   meeting == Meeting::Concave ? height :
-										 std::abs(height);
+	return meeting == Meeting::Convex    ? -height
+	       : meeting == Meeting::Concave ? height
+	                                     : std::abs(height);
 }
 
 std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vector3d& position) const
@@ -302,9 +306,9 @@ std::vector<SurfaceAnchors::Face> SurfaceAnchors::facesAround(const Eigen::Vecto
 			continue;
 		const Eigen::Vector3d normal = (e.normal + turn).normalized();
 		const double          weight = ballKernel(squared / (reach * reach)) + 1e-6;
-		auto face = std::find_if(faces.begin(), faces.end(), [&](const Face& f) {
-			return (f.normal.normalized() - normal).norm() < m_jump;
-		});
+		auto                  face   = std::find_if(faces.begin(), faces.end(), [&](const Face& f) {
+            return (f.normal.normalized() - normal).norm() < m_jump;
+        });
 		if (face == faces.end())
 			face = faces.emplace(faces.end());
 		face->normal += weight * normal;
@@ -346,7 +350,9 @@ SurfaceAnchors::Meeting SurfaceAnchors::meetingOf(const std::vector<Face>& faces
 }
 
 double SurfaceAnchors::misfitOfFaces(
-	const PointSample& sample, const Eigen::Vector3d& position, const std::vector<Face>& faces) const
+	const PointSample&       sample,
+	const Eigen::Vector3d&   position,
+	const std::vector<Face>& faces) const
 {
 	thread_local std::vector<Index> near;
 	const double                    radius  = m_scale.height.radius;
@@ -397,9 +403,9 @@ SurfaceElement SurfaceAnchors::nearestFace(
 	result.residual = m_noise;
 	result.valid    = true;
 	if (edge && faces.size() > 1) {
-		const Face&           other  = faces[1];
-		const double          cosine = own.normal.dot(other.normal);
-		const double          sine   = std::max(own.normal.cross(other.normal).norm(), 1e-9);
+		const Face&  other  = faces[1];
+		const double cosine = own.normal.dot(other.normal);
+		const double sine   = std::max(own.normal.cross(other.normal).norm(), 1e-9);
 		// From the foot point on the own plane to the other plane, within the own one.
 		edge->angle    = std::atan2(sine, cosine);
 		edge->distance = std::abs(other.height - own.height * cosine) / sine;
@@ -435,9 +441,9 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 	for (const Index a : near) {
 		if (m_misfit[a] || !m_elements[a].valid)
 			continue;
-		inBall[a] = 1;
+		inBall[a]             = 1;
 		const double distance = unit * (m_surface.positions.col(a) - start.position).squaredNorm() +
-			4.0 * (m_surface.normals.col(a) - start.normal).squaredNorm();
+		                        4.0 * (m_surface.normals.col(a) - start.normal).squaredNorm();
 		if (distance < closest) {
 			closest = distance;
 			seed    = a;
@@ -460,8 +466,7 @@ void SurfaceAnchors::keepConnected(const SurfaceElement& start, std::vector<Inde
 }
 
 // Distance of the weighted mean of the anchors from the centre of the ball, in radii.
-double
-SurfaceAnchors::offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const
+double SurfaceAnchors::offsetOf(const std::vector<Index>& near, const Eigen::Vector3d& center) const
 {
 	Eigen::Vector3d sum   = Eigen::Vector3d::Zero();
 	double          total = 0.0;
@@ -489,7 +494,8 @@ SurfaceElement SurfaceAnchors::normalField(const SurfaceElement& start) const
 		}
 		else {
 			near.erase(
-				std::remove_if(near.begin(), near.end(), [&](Index a) { return !m_elements[a].valid; }),
+				std::remove_if(
+					near.begin(), near.end(), [&](Index a) { return !m_elements[a].valid; }),
 				near.end());
 		}
 	}

@@ -13,9 +13,9 @@ namespace curvature_lines {
 // normalRadius is 0, a cubic polynomial of the normals of anchors within normalRadius.
 struct CurvatureScale {
 	HeightScale height;
-	double      normalRadius = 0.0; // length
-	int         family       = 0;   // scales of one family differ in size only
-	int         level        = 0;
+	double      normalRadius  = 0.0; // length
+	int         family        = 0;   // scales of one family differ in size only
+	int         level         = 0;
 	double      usualResidual = 0.0; // of the heights, where the surface is smooth (length)
 
 	double radius() const { return std::max(height.radius, normalRadius); }
@@ -41,8 +41,8 @@ public:
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
 	const std::vector<SurfaceElement>& elements() const { return m_elements; }
-	const Eigen::Matrix3Xd&            origins() const { return m_origins; }
-	bool                               hasEdges() const { return m_hasEdges; }
+	const Eigen::Matrix3Xd& origins() const { return m_origins; }
+	bool hasEdges() const { return m_hasEdges; }
 	// Normals further apart than this (length of the difference) belong to different faces.
 	double jump() const { return m_jump; }
 	// Whether an edge may run through the ball at `position`.
@@ -60,20 +60,20 @@ public:
 private:
 	// A face of the surface, continued to a point from the anchors around it.
 	struct Face {
-		Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-		Eigen::Vector3d center = Eigen::Vector3d::Zero(); // of the anchors
-		Eigen::Matrix3d shape  = Eigen::Matrix3d::Zero();
-		double          height = 0.0; // of the point above the face
-		double          weight = 0.0;
+		Eigen::Vector3d normal  = Eigen::Vector3d::Zero();
+		Eigen::Vector3d center  = Eigen::Vector3d::Zero(); // of the anchors
+		Eigen::Matrix3d shape   = Eigen::Matrix3d::Zero();
+		double          height  = 0.0; // of the point above the face
+		double          weight  = 0.0;
 		int             members = 0;
 	};
 	enum class Meeting { Convex, Concave, Mixed };
 
 	std::vector<Face> facesAround(const Eigen::Vector3d& position) const;
-	static Meeting    meetingOf(const std::vector<Face>& faces);
-	static double     nearness(Meeting meeting, double height); // the smallest is the nearest
-	SurfaceElement    nearestFace(
-		   const Eigen::Vector3d& position, std::vector<Face> faces, EdgeNearby* edge) const;
+	static Meeting meetingOf(const std::vector<Face>& faces);
+	static double nearness(Meeting meeting, double height); // the smallest is the nearest
+	SurfaceElement
+	nearestFace(const Eigen::Vector3d& position, std::vector<Face> faces, EdgeNearby* edge) const;
 	// RMS distance of the points around from the nearest of the faces.
 	double misfitOfFaces(
 		const PointSample&       sample,
@@ -93,22 +93,24 @@ private:
 	// Those of `near` that are reached from the best match of `start` without crossing a cut.
 	void keepConnected(const SurfaceElement& start, std::vector<Index>& near) const;
 
-	CurvatureScale                  m_scale;
-	std::vector<SurfaceElement>     m_elements;
-	std::vector<Index>              m_places; // as in the fits
-	Eigen::Matrix3Xd                m_origins;
-	PointCloud                      m_surface; // positions and normals of the elements, together for the fits
-	std::unique_ptr<NeighborSearch> m_search;  // over m_surface
+	CurvatureScale              m_scale;
+	std::vector<SurfaceElement> m_elements;
+	std::vector<Index>          m_places; // as in the fits
+	Eigen::Matrix3Xd            m_origins;
+	// positions and normals of the elements, together for the fits
+	PointCloud                      m_surface;
+	std::unique_ptr<NeighborSearch> m_search;       // over m_surface
 	std::unique_ptr<NeighborSearch> m_originSearch; // over m_origins
-	bool                            m_hasEdges = false;
+	bool                            m_hasEdges    = false;
 	bool                            m_hasOutliers = false; // among the points anchors were tried at
-	double                          m_noise    = 0.0;
-	double                          m_jump     = 0.35;
-	double                          m_linkLength = 0.0;
-	std::vector<char>               m_misfit;  // an edge runs through the ball
-	std::vector<char>               m_atCut;   // a link of it was cut
+	double                          m_noise       = 0.0;
+	double                          m_jump        = 0.35;
+	double                          m_linkLength  = 0.0;
+	std::vector<char>               m_misfit; // an edge runs through the ball
+	std::vector<char>               m_atCut;  // a link of it was cut
 	NeighborLists                   m_links;
-	std::vector<SurfaceElement>     m_faces;   // of fitting anchors near misfits: their refined surface
+	// of fitting anchors near misfits: their refined surface
+	std::vector<SurfaceElement> m_faces;
 };
 
 } // namespace curvature_lines

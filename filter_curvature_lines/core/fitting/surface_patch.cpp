@@ -19,17 +19,18 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int    minRobustPoints  = 12; // twice the unknowns: a majority must determine a quadric
-constexpr int    triples          = 24;
-constexpr int    planeSample      = 48;  // points that judge a plane
-constexpr double planeCutoff      = 2.5; // robust deviations
-constexpr double minority           = 0.35; // of the points may be all that lie on one surface
-constexpr double minorityDeviations = 2.2036; // deviation of a normal distribution over this quantile of |r|
+constexpr int    minRobustPoints = 12; // twice the unknowns: a majority must determine a quadric
+constexpr int    triples         = 24;
+constexpr int    planeSample     = 48;   // points that judge a plane
+constexpr double planeCutoff     = 2.5;  // robust deviations
+constexpr double minority        = 0.35; // of the points may be all that lie on one surface
+// deviation of a normal distribution over this quantile of |r|
+constexpr double minorityDeviations = 2.2036;
 constexpr double medianDeviations   = 1.4826; // and over the median
-constexpr double downweighting    = 1.5;
-constexpr double cutoff           = 4.5;
-constexpr int    firstIterations  = 5;
-constexpr int    tiltedIterations = 6;
+constexpr double downweighting      = 1.5;
+constexpr double cutoff             = 4.5;
+constexpr int    firstIterations    = 5;
+constexpr int    tiltedIterations   = 6;
 
 constexpr int monomialIndex(int a, int b)
 {
@@ -40,7 +41,7 @@ constexpr int monomialIndex(int a, int b)
 template<class Matrix>
 auto leveragePolynomial(const Matrix& inverse)
 {
-	constexpr int exponent[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+	constexpr int exponent[6][2]                 = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
 	Eigen::Matrix<double, monomialCount(4), 1> c = decltype(c)::Zero();
 	for (int r = 0; r < 6; ++r)
 		for (int s = 0; s < 6; ++s)
@@ -56,18 +57,19 @@ struct PatchSums {
 
 CURVATURE_LINES_AVX2_CLONE PatchSums sumUp(const SurfacePatch& patch, LocalSamples<1>& samples)
 {
-	const double* const a    = patch.coefficients.data();
-	const double* const h    = patch.leverageCoefficients.data();
-	const double        ir   = 1.0 / patch.radius;
-	const int           n    = samples.pad();
-	const Block         zero = {};
+	const double* const a       = patch.coefficients.data();
+	const double* const h       = patch.leverageCoefficients.data();
+	const double        ir      = 1.0 / patch.radius;
+	const int           n       = samples.pad();
+	const Block         zero    = {};
 	Block               squares = zero, lost = zero, squaredWeights = zero;
 	for (int s = 0; s < n; s += blockSize) {
-		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]), w = blockAt(&samples.weight[s]);
+		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]),
+					w      = blockAt(&samples.weight[s]);
 		const Block slopeX = (a[1] + 2.0 * a[3] * x + a[4] * y) * ir;
 		const Block slopeY = (a[2] + a[4] * x + 2.0 * a[5] * y) * ir;
-		const Block off =
-			blockAt(&samples.value[0][s]) - a[0] - x * (a[1] + a[3] * x + a[4] * y) - y * (a[2] + a[5] * y);
+		const Block off = blockAt(&samples.value[0][s]) - a[0] - x * (a[1] + a[3] * x + a[4] * y) -
+		                  y * (a[2] + a[5] * y);
 		Block leverage = zero;
 #pragma GCC unroll 8
 		for (int i = 4; i >= 0; --i) {
@@ -101,8 +103,8 @@ std::uint32_t nextRandom(std::uint32_t& state)
 }
 
 struct Plane {
-	Vector3d normal   = Vector3d::Zero();
-	double   offset   = 0.0;
+	Vector3d normal    = Vector3d::Zero();
+	double   offset    = 0.0;
 	double   deviation = -1.0; // of the points near it; negative when no three points span a plane
 };
 
@@ -113,8 +115,8 @@ Plane majorityPlane(
 	std::uint32_t           seed,
 	std::vector<double>&    distance)
 {
-	const auto n      = static_cast<std::uint32_t>(points.cols());
-	const int  judges = std::min<int>(n, planeSample);
+	const auto n            = static_cast<std::uint32_t>(points.cols());
+	const int  judges       = std::min<int>(n, planeSample);
 	double     bestDistance = std::numeric_limits<double>::infinity();
 	Plane      best;
 	distance.resize(std::max<std::size_t>(distance.size(), judges));
@@ -130,10 +132,9 @@ Plane majorityPlane(
 		Plane plane;
 		plane.normal = normal / length;
 		plane.offset = plane.normal.dot(a);
-		int nearer = 0; // than the quantile of the best so far
+		int nearer   = 0; // than the quantile of the best so far
 		for (int k = 0; k < judges; ++k) {
-			distance[k] =
-				std::abs(plane.normal.dot(points.col(k * n / judges)) - plane.offset);
+			distance[k] = std::abs(plane.normal.dot(points.col(k * n / judges)) - plane.offset);
 			nearer += distance[k] < bestDistance;
 		}
 		if (nearer <= static_cast<int>(minority * judges))
@@ -192,12 +193,12 @@ void project(const SurfacePatch& patch, const Eigen::Matrix3Xd& points, LocalSam
 // away, the median over all of them would be a mixture. 0 in the first step, which takes the minority.
 double robustScale(RobustPatchScratch& scratch, int n, double before)
 {
-	const bool   first  = before <= 0.0;
-	const double limit  = first ? std::numeric_limits<double>::infinity() : cutoff * before;
-	const double factor = first ? minorityDeviations : medianDeviations;
+	const bool   first    = before <= 0.0;
+	const double limit    = first ? std::numeric_limits<double>::infinity() : cutoff * before;
+	const double factor   = first ? minorityDeviations : medianDeviations;
 	const auto   absolute = [&](int k) {
-		const double r = std::abs(scratch.residuals[k]);
-		return r < limit ? r : -1.0;
+        const double r = std::abs(scratch.residuals[k]);
+        return r < limit ? r : -1.0;
 	};
 	const double value =
 		quantileNear(before / factor, n, absolute, first ? minority : 0.5, scratch.absolute);
@@ -214,7 +215,7 @@ bool reweightedStep(SurfacePatch& patch, double minScale, RobustPatchScratch& sc
 	const int n        = samples.size();
 	patch.coefficients = fit.coefficients;
 	patchResiduals(patch, samples, scratch.residuals);
-	patch.scale = std::max(robustScale(scratch, n, patch.scale), minScale);
+	patch.scale        = std::max(robustScale(scratch, n, patch.scale), minScale);
 	const double unit  = 1.0 / (downweighting * patch.scale);
 	const double limit = (cutoff / downweighting) * (cutoff / downweighting);
 	for (int k = 0; k < n; ++k) {
@@ -279,9 +280,7 @@ void SurfacePatch::tilt()
 }
 
 void patchResiduals(
-	const SurfacePatch&  patch,
-	LocalSamples<1>&     samples,
-	std::vector<double>& residuals)
+	const SurfacePatch& patch, LocalSamples<1>& samples, std::vector<double>& residuals)
 {
 	using Array     = Eigen::Map<const Eigen::ArrayXd>;
 	const int    n  = samples.pad();
@@ -292,7 +291,7 @@ void patchResiduals(
 	Eigen::Map<Eigen::ArrayXd>(residuals.data(), n) =
 		(z - a[0] - x * (a[1] + a[3] * x + a[4] * y) - y * (a[2] + a[5] * y)) /
 		(1.0 + ((a[1] + 2.0 * a[3] * x + a[4] * y) * ir).square() +
-		 ((a[2] + a[4] * x + 2.0 * a[5] * y) * ir).square())
+	     ((a[2] + a[4] * x + 2.0 * a[5] * y) * ir).square())
 			.sqrt();
 }
 
@@ -318,7 +317,7 @@ bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples)
 	const PatchSums sums    = sumUp(patch, samples);
 	const double    degrees = fit.sumOfWeights - sums.lost;
 	// Samples that a quadric goes through exactly tell nothing about the noise.
-	patch.scale          = degrees > 1e-6 * fit.sumOfWeights ? std::sqrt(sums.squares / degrees) : 0.0;
+	patch.scale = degrees > 1e-6 * fit.sumOfWeights ? std::sqrt(sums.squares / degrees) : 0.0;
 	patch.effectiveCount = fit.sumOfWeights * fit.sumOfWeights / sums.squaredWeights;
 	return true;
 }

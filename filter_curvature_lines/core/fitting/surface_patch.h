@@ -33,8 +33,8 @@ struct SurfacePatch {
 	{
 	}
 
-	Local           toLocal(const Eigen::Vector3d& p) const;
-	double          height(double x, double y) const;
+	Local toLocal(const Eigen::Vector3d& p) const;
+	double height(double x, double y) const;
 	Eigen::Vector2d gradient(double x, double y) const;
 	Eigen::Vector3d normal(double x, double y) const;
 	// Signed distance from the surface along its normal, to first order.
@@ -56,9 +56,7 @@ inline double supportWeight(double x, double y)
 
 // residuals[s] of each sample (x, y; value z) of the patch; longer than the samples by a padding.
 void patchResiduals(
-	const SurfacePatch&  patch,
-	LocalSamples<1>&     samples,
-	std::vector<double>& residuals);
+	const SurfacePatch& patch, LocalSamples<1>& samples, std::vector<double>& residuals);
 
 // Weighted least squares in the frame of the patch, with
 // s^2 = sum W r^2 / (sum W - tr(A^-1 sum W^2 phi phi^T)). False, and invalid, when the samples do not

@@ -21,7 +21,7 @@ public:
 			for (Index k = 0; k < n; ++k) {
 				m_length[first + k] = length;
 				length += (lines.vertices.col(first + (k + 1) % n) - lines.vertices.col(first + k))
-							  .norm();
+				              .norm();
 			}
 			m_total.push_back(length);
 		}
@@ -82,7 +82,7 @@ public:
 			return -1;
 		const Index other = entries[(k + n) % n];
 		return forward ? (isShort(entry, other) ? other : -1)
-					   : (isShort(other, entry) ? other : -1);
+		               : (isShort(other, entry) ? other : -1);
 	}
 
 private:
@@ -135,7 +135,7 @@ void removeCurls(
 		const Index  line = c.line[0];
 		const double near = reach[lines.offsets[line] + static_cast<Index>(c.parameter[0])];
 		return arcs.between(line, c.parameter[0], c.parameter[1]) < near ||
-			   (isClosed(lines, line) && arcs.between(line, c.parameter[1], c.parameter[0]) < near);
+		       (isClosed(lines, line) && arcs.between(line, c.parameter[1], c.parameter[0]) < near);
 	};
 	crossings.erase(std::remove_if(crossings.begin(), crossings.end(), isCurl), crossings.end());
 }
@@ -165,17 +165,17 @@ Index reorderTriangles(const Passages& passages, std::vector<LineCrossing>& cros
 	std::vector<char> moved(crossings.size(), 0);
 	Index             exchanges = 0;
 	const auto        tryAt     = [&](const Triangle& t) {
-		const Index corners[] = {t.onL[0] >> 1, t.onL[1] >> 1, t.onM[1] >> 1};
-		Index       exchange[2];
-		if (moved[corners[0]] || moved[corners[1]] || moved[corners[2]] ||
-			!findWrongOrder(passages, t, exchange))
-			return;
-		std::swap(
-			crossings[exchange[0] >> 1].parameter[exchange[0] & 1],
-			crossings[exchange[1] >> 1].parameter[exchange[1] & 1]);
-		for (const Index c : corners)
-			moved[c] = 1;
-		++exchanges;
+        const Index corners[] = {t.onL[0] >> 1, t.onL[1] >> 1, t.onM[1] >> 1};
+        Index       exchange[2];
+        if (moved[corners[0]] || moved[corners[1]] || moved[corners[2]] ||
+            !findWrongOrder(passages, t, exchange))
+            return;
+        std::swap(
+            crossings[exchange[0] >> 1].parameter[exchange[0] & 1],
+            crossings[exchange[1] >> 1].parameter[exchange[1] & 1]);
+        for (const Index c : corners)
+            moved[c] = 1;
+        ++exchanges;
 	};
 	for (Index a = 0; a < passages.size(); ++a) {
 		const Index b = passages.near(a, true);

@@ -52,8 +52,8 @@ double bend(const HalfEdgeGraph& graph, Index h)
 	if (first.dot(start) <= 0.0 || second.dot(end) <= 0.0)
 		return signedAngle(start, end, edge.middleNormal);
 	return signedAngle(start, first, graph.normals().col(from)) +
-		   signedAngle(first, second, edge.middleNormal) +
-		   signedAngle(second, end, graph.normals().col(to));
+	       signedAngle(first, second, edge.middleNormal) +
+	       signedAngle(second, end, graph.normals().col(to));
 }
 
 } // namespace

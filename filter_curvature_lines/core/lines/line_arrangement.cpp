@@ -67,11 +67,11 @@ public:
 		for (const Piece& p : pieces) {
 			edges.push_back(
 				{p.from,
-				 p.to,
-				 tangentAt(p.from, reach[p.from], p.line, p.entryFrom, p.half, 1.0),
-				 tangentAt(p.to, reach[p.to], p.line, p.entryTo, p.half - p.wrap, -1.0),
-				 p.middle,
-				 (m_normals.col(p.from) + m_normals.col(p.to)).normalized()});
+			     p.to,
+			     tangentAt(p.from, reach[p.from], p.line, p.entryFrom, p.half, 1.0),
+			     tangentAt(p.to, reach[p.to], p.line, p.entryTo, p.half - p.wrap, -1.0),
+			     p.middle,
+			     (m_normals.col(p.from) + m_normals.col(p.to)).normalized()});
 		}
 		return HalfEdgeGraph(m_positions, m_normals, std::move(edges));
 	}
@@ -142,7 +142,7 @@ private:
 		for (Index c = 0; c < crossings; ++c) {
 			double& radius = m_radius[m_vertexOf[c]];
 			radius         = std::max(
-				radius, (m_found.crossings[c].position - m_positions.col(m_vertexOf[c])).norm());
+                radius, (m_found.crossings[c].position - m_positions.col(m_vertexOf[c])).norm());
 		}
 	}
 
@@ -193,7 +193,7 @@ private:
 		Vector3d       leg;
 		do {
 			t   = sense > 0.0 ? std::min(std::floor(t) + 1.0, half)
-							  : std::max(std::ceil(t) - 1.0, half);
+			                  : std::max(std::ceil(t) - 1.0, half);
 			leg = pointAt(line, t < 0.0 ? t + n : t) - center;
 		} while (t != half && leg.norm() < reach);
 		return leg;

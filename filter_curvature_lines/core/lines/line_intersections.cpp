@@ -26,7 +26,7 @@ using Point  = Kernel::Point_3;
 // by the error of their projection, a fraction of the spacing.
 constexpr double StripHeight = 1.5;
 // Two lines that cross and cross back within this many strip heights only touch.
-constexpr double TouchLength      = 4.0;
+constexpr double TouchLength = 4.0;
 // Below so many boxes CGAL scans instead of dividing them further; strips are flat and divide badly.
 constexpr std::ptrdiff_t ScannedBoxes = 300;
 
@@ -76,7 +76,7 @@ public:
 	CGAL::Bbox_3 boundingBox(const Segment& s) const
 	{
 		return m_rims[2 * s.from].bbox() + m_rims[2 * s.from + 1].bbox() + m_rims[2 * s.to].bbox() +
-			   m_rims[2 * s.to + 1].bbox();
+		       m_rims[2 * s.to + 1].bbox();
 	}
 
 	// Appends where segment b passes through the strip of segment a.
@@ -97,7 +97,7 @@ private:
 	using Corners = std::array<Index, 3>;
 
 	static Point toPoint(const Vector3d& p) { return Point(p.x(), p.y(), p.z()); }
-	Vector3d     rim(Index corner) const
+	Vector3d rim(Index corner) const
 	{
 		return {m_rims[corner].x(), m_rims[corner].y(), m_rims[corner].z()};
 	}
@@ -117,7 +117,7 @@ private:
 	{
 		const bool ordered = c0 < c1;
 		const bool turn    = positive(
-			m_points[b.from], m_points[b.to], m_rims[ordered ? c0 : c1], m_rims[ordered ? c1 : c0]);
+            m_points[b.from], m_points[b.to], m_rims[ordered ? c0 : c1], m_rims[ordered ? c1 : c0]);
 		return turn == ordered;
 	}
 
@@ -222,10 +222,14 @@ std::vector<LineCrossing> findCrossings(
             strips.pierce(b, a, crossings);
 	};
 	CGAL::box_self_intersection_d(
-		boxes.begin(), boxes.end(), test, CGAL::Box_intersection_d::Box_traits_d<Box>(), ScannedBoxes);
+		boxes.begin(),
+		boxes.end(),
+		test,
+		CGAL::Box_intersection_d::Box_traits_d<Box>(),
+		ScannedBoxes);
 	std::sort(crossings.begin(), crossings.end(), [](const LineCrossing& a, const LineCrossing& b) {
 		return std::tie(a.line[0], a.line[1], a.parameter[0], a.parameter[1]) <
-			   std::tie(b.line[0], b.line[1], b.parameter[0], b.parameter[1]);
+		       std::tie(b.line[0], b.line[1], b.parameter[0], b.parameter[1]);
 	});
 	return crossings;
 }

@@ -21,14 +21,15 @@ enum class LineEnd {
 // All lines of both families. Vertices of line l: [offsets[l], offsets[l + 1]), in order along the line;
 // a closed line's last vertex joins its first (not repeated).
 struct LineNetwork {
-	Eigen::Matrix3Xd      vertices, normals; // 3 x M
-	Eigen::VectorXd       curvature;         // M, principal curvature along the line
-	std::vector<Index>    offsets = {0};
-	std::vector<int>      family;            // per line, 1 (along d1) or 2
-	std::vector<char>     closed;            // per line
-	std::vector<std::array<LineEnd, 2>> ends; // per line, before its first and after its last vertex
-	double                epsilon = 0.0;     // the one used, fraction of the diagonal
-	Index                 crossings = 0;     // of the two families, as LineRegistry counts them
+	Eigen::Matrix3Xd   vertices, normals; // 3 x M
+	Eigen::VectorXd    curvature;         // M, principal curvature along the line
+	std::vector<Index> offsets = {0};
+	std::vector<int>   family; // per line, 1 (along d1) or 2
+	std::vector<char>  closed; // per line
+	// per line, before its first and after its last vertex
+	std::vector<std::array<LineEnd, 2>> ends;
+	double                              epsilon = 0.0; // the one used, fraction of the diagonal
+	Index crossings = 0; // of the two families, as LineRegistry counts them
 
 	Index lines() const { return static_cast<Index>(family.size()); }
 };
@@ -37,7 +38,7 @@ struct LineNetwork {
 Eigen::VectorXd arcLengths(const LineNetwork& lines);
 
 Index segmentCount(const LineNetwork& lines, Index line);
-bool  isClosed(const LineNetwork& lines, Index line); // marked so, and long enough to be
+bool isClosed(const LineNetwork& lines, Index line); // marked so, and long enough to be
 
 // Point of a polyline at a parameter.
 Eigen::Vector3d pointOnLine(const LineNetwork& lines, Index line, double parameter);

@@ -34,7 +34,7 @@ double area(const Vector2d& a, const Vector2d& b, const Vector2d& c)
 bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d)
 {
 	return (area(a, b, c) > 0.0) != (area(a, b, d) > 0.0) &&
-		   (area(c, d, a) > 0.0) != (area(c, d, b) > 0.0);
+	       (area(c, d, a) > 0.0) != (area(c, d, b) > 0.0);
 }
 
 } // namespace
@@ -57,11 +57,8 @@ NeighborLists proximityGraph(const MinimumNeighborhoods& minimum)
 
 LineRegistry::LineRegistry(
 	const PointCloud& cloud, const MinimumNeighborhoods& minimum, const NeighborLists& proximity) :
-		m_positions(cloud.positions),
-		m_spacing(minimum.spacing),
-		m_neighbors(proximity),
-		m_first(cloud.size(), -1),
-		m_visited(cloud.size(), 0)
+		m_positions(cloud.positions), m_spacing(minimum.spacing), m_neighbors(proximity),
+		m_first(cloud.size(), -1), m_visited(cloud.size(), 0)
 {
 }
 
@@ -102,7 +99,7 @@ bool LineRegistry::blocks(const FlowSegment& segment, const ProximityQuery& quer
 		return false;
 	const double radius = own ? query.ownRadius : query.radius;
 	return segment.normal.dot(query.normal) > SameSheetCosine &&
-		   distance2ToSegment(query.position, segment.from, segment.to) < radius * radius;
+	       distance2ToSegment(query.position, segment.from, segment.to) < radius * radius;
 }
 
 bool LineRegistry::occupied(const ProximityQuery& query)
@@ -138,7 +135,7 @@ Index LineRegistry::countCrossings(const LineRegistry& other, const Matrix3Xd& n
 			continue;
 		const TangentFrame frame(normals.col(cell));
 		const auto         flat = [&](const Vector3d& x) {
-			return frame.toPlane(x - m_positions.col(cell));
+            return frame.toPlane(x - m_positions.col(cell));
 		};
 		for (Index e = m_first[cell]; e >= 0; e = m_entries[e].next) {
 			const FlowSegment& s = m_segments[m_entries[e].segment];

@@ -36,9 +36,9 @@ public:
 		const MinimumNeighborhoods& minimum,
 		const NeighborLists&        proximity); // proximityGraph(minimum)
 
-	void  add(const FlowSegment& segment);
+	void add(const FlowSegment& segment);
 	Index size() const { return static_cast<Index>(m_segments.size()); }
-	void  truncate(Index size); // takes back the segments added last
+	void truncate(Index size); // takes back the segments added last
 
 	// Distances are to segments, not samples; segments whose normal is more than 60 degrees off are on
 	// another sheet or beyond a fold. Uses scratch of its own: one query at a time.

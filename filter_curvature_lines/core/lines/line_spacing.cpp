@@ -15,12 +15,14 @@ namespace curvature_lines {
 namespace {
 
 constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cells apart
-constexpr double SmallestMin  = 0.5; // median spacings: below, the cloud says nothing about the lines
+// median spacings: below, the cloud says nothing about the lines
+constexpr double SmallestMin  = 0.5;
 constexpr double AutomaticMax = 0.1; // bounding-box diagonals
-constexpr double TargetRange  = 2.0; // with a target, up to so many times the mean distance and down to 1 / it
-constexpr double SmallestEpsilon = 1e-12, LargestEpsilon = 1.0; // diagonals
-constexpr double EpsilonTolerance = 3e-5; // of epsilon
-constexpr std::uintmax_t MostEvaluations = 40;
+// with a target, up to so many times the mean distance and down to 1 / it
+constexpr double         TargetRange     = 2.0;
+constexpr double         SmallestEpsilon = 1e-12, LargestEpsilon = 1.0; // diagonals
+constexpr double         EpsilonTolerance = 3e-5;                       // of epsilon
+constexpr std::uintmax_t MostEvaluations  = 40;
 // Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
 // slices' neighbours is 1.22 / sqrt(density).
 constexpr double ShareOfSpacing = 0.67;
@@ -49,20 +51,21 @@ private:
 	const NeighborLists&                  m_neighbors;
 	std::vector<double>                   m_growth; // to each of the neighbours
 	std::array<const Eigen::VectorXd*, 2> m_across; // curvature across the lines
-	std::array<std::vector<Index>, 2>     m_byBound; // the more bent the smaller is d(kappa), for any epsilon
+	// the more bent the smaller is d(kappa), for any epsilon
+	std::array<std::vector<Index>, 2> m_byBound;
 };
 
 GradedDistances::GradedDistances(
 	const PointCloud&           cloud,
 	const CurvatureField&       field,
 	const MinimumNeighborhoods& minimum,
-	double                      gradation) :
-		m_neighbors(minimum.neighbors), m_across {&field.k2, &field.k1}
+	double gradation) : m_neighbors(minimum.neighbors), m_across{&field.k2, &field.k1}
 {
 	m_growth.reserve(m_neighbors.indices.size());
 	for (Index i = 0; i < cloud.size(); ++i)
 		for (const Index j : m_neighbors[i])
-			m_growth.push_back(gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm());
+			m_growth.push_back(
+				gradation * (cloud.positions.col(j) - cloud.positions.col(i)).norm());
 	for (int family = 0; family < 2; ++family) {
 		const Eigen::VectorXd& across = *m_across[family];
 		std::vector<Index>&    order  = m_byBound[family];
@@ -86,7 +89,7 @@ GradedDistances::operator()(int family, double epsilon, const Bounds& bounds) co
 	// Dijkstra from all points at once: in the order of d, those that were lowered among the others.
 	using Entry = std::pair<double, Index>;
 	std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> lowered;
-	std::size_t next = 0;
+	std::size_t                                                         next = 0;
 	while (next < d.size() || !lowered.empty()) {
 		Index i = 0;
 		if (next < d.size() && (lowered.empty() || d[order[next]] <= lowered.top().first)) {
@@ -120,8 +123,8 @@ double surfaceArea(const MinimumNeighborhoods& minimum)
 }
 
 // Two families at distances c d1 and c d2 cross once in every c d1 by c d2 of surface.
-double predictedCrossings(
-	const MinimumNeighborhoods& minimum, const std::array<std::vector<double>, 2>& d)
+double
+predictedCrossings(const MinimumNeighborhoods& minimum, const std::array<std::vector<double>, 2>& d)
 {
 	double sum = 0.0;
 	for (std::size_t i = 0; i < d[0].size(); ++i) {
@@ -136,7 +139,9 @@ double predictedCrossings(
 template<class Predict>
 double epsilonFor(double crossings, const Predict& predict)
 {
-	const auto surplus = [&](double logarithm) { return std::log(predict(std::exp(logarithm)) / crossings); };
+	const auto surplus = [&](double logarithm) {
+		return std::log(predict(std::exp(logarithm)) / crossings);
+	};
 	const double low = std::log(SmallestEpsilon), high = std::log(LargestEpsilon);
 	const double atLow = surplus(low), atHigh = surplus(high);
 	if (!(atLow > 0.0))
@@ -195,10 +200,10 @@ LineSpacing chooseLineSpacing(
 	const Bounds bounds   = spacingBounds(minimum, options, diagonal, crossings);
 
 	const GradedDistances graded(cloud, field, minimum, options.gradation);
-	const auto at = [&](double epsilon) {
-		std::array<std::vector<double>, 2> distance;
-		parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon * diagonal, bounds); });
-		return distance;
+	const auto            at = [&](double epsilon) {
+        std::array<std::vector<double>, 2> distance;
+        parallelFor(2, {}, [&](Index f) { distance[f] = graded(f, epsilon * diagonal, bounds); });
+        return distance;
 	};
 	const auto predict = [&](double epsilon) { return predictedCrossings(minimum, at(epsilon)); };
 

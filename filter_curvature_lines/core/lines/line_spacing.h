@@ -11,9 +11,10 @@
 namespace curvature_lines {
 
 struct LineSpacingOptions {
-	double epsilon        = 1e-5; // chord error, fraction of the bounding-box diagonal (A09 prints it as kappa)
-	double minSpacing     = 0.0;  // length; 0 = automatic, a multiple of the median point spacing
-	double maxSpacing     = 0.0;  // length; 0 = automatic
+	// chord error, fraction of the bounding-box diagonal (A09 prints it as kappa)
+	double epsilon    = 1e-5;
+	double minSpacing = 0.0; // length; 0 = automatic, a multiple of the median point spacing
+	double maxSpacing = 0.0; // length; 0 = automatic
 	// d grows by no more than this times the distance. With 0.25 a small detail makes lines dense all around:
 	// on a cow crossings fall 5 instead of 10 times when epsilon grows tenfold (7 with 1), but a mesh has
 	// more quads.
@@ -21,9 +22,10 @@ struct LineSpacingOptions {
 };
 
 struct LineSpacing {
-	double                             diagonal = 0.0; // of the cloud's bounding box
-	double                             epsilon  = 0.0; // fraction of it
-	std::array<std::vector<double>, 2> distance; // N per family: distance to keep from the next line
+	double diagonal = 0.0; // of the cloud's bounding box
+	double epsilon  = 0.0; // fraction of it
+	// N per family: distance to keep from the next line
+	std::array<std::vector<double>, 2> distance;
 };
 
 // Distance to keep from the next line of the same family: 2 sqrt(eps (2/|k| - eps)), the chord of sagitta

@@ -16,13 +16,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double MaxLength       = 10.0;  // diagonals
-constexpr double SameDirection   = 0.5;   // cosine of 60 degrees, of a line that comes back to its start
-constexpr double OwnArc          = 3.0;   // own parts closer than this along the line do not count, in d
-constexpr double OwnDistance     = 0.9;   // own parts nearer than this stop the line, in stop distances
-constexpr double ClosingSpread   = 30.0;  // the offset is spread over so many times its length
-constexpr int    RimBisections   = 5;
-constexpr Index  ReportEvery     = 1024;
+constexpr double MaxLength = 10.0; // diagonals
+// cosine of 60 degrees, of a line that comes back to its start
+constexpr double SameDirection = 0.5;
+// own parts closer than this along the line do not count, in d
+constexpr double OwnArc = 3.0;
+// own parts nearer than this stop the line, in stop distances
+constexpr double OwnDistance   = 0.9;
+constexpr double ClosingSpread = 30.0; // the offset is spread over so many times its length
+constexpr int    RimBisections = 5;
+constexpr Index  ReportEvery   = 1024;
 
 using Points = std::vector<FlowPoint>;
 
@@ -44,26 +47,27 @@ public:
 		const SurfaceFlow&          flow,
 		const LineTracingOptions&   options,
 		const LineSpacing&          spacing) :
-			m_family(family), m_cloud(cloud), m_flow(flow), m_options(options), m_diagonal(spacing.diagonal),
-			m_distance(spacing.distance[family - 1]), m_registry(cloud, minimum, proximity)
+			m_family(family), m_cloud(cloud), m_flow(flow), m_options(options),
+			m_diagonal(spacing.diagonal), m_distance(spacing.distance[family - 1]),
+			m_registry(cloud, minimum, proximity)
 	{
 	}
 
 	void run(const std::vector<Index>& seeds, const Progress& progress);
 
 	const std::vector<TracedLine>& lines() const { return m_lines; }
-	const Points&                  points() const { return m_points; }
-	const LineRegistry&            registry() const { return m_registry; }
+	const Points& points() const { return m_points; }
+	const LineRegistry& registry() const { return m_registry; }
 
 private:
-	void     traceThrough(Index seed, Index place, const Progress& progress);
-	LineEnd  traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
-	void     reachOut(const FlowPoint& from, Points& half);
-	bool     occupied(const FlowPoint& point, bool approachesStart);
-	void     registerSegment(const FlowPoint& from, const FlowPoint& to);
-	void     closeUp(const FlowPoint& start, Points& half);
+	void traceThrough(Index seed, Index place, const Progress& progress);
+	LineEnd traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
+	void reachOut(const FlowPoint& from, Points& half);
+	bool occupied(const FlowPoint& point, bool approachesStart);
+	void registerSegment(const FlowPoint& from, const FlowPoint& to);
+	void closeUp(const FlowPoint& start, Points& half);
 
-	Index  currentLine() const { return static_cast<Index>(m_lines.size()); }
+	Index currentLine() const { return static_cast<Index>(m_lines.size()); }
 	double distance(Index cell) const { return m_distance[cell]; }
 
 	const int                  m_family;
@@ -74,7 +78,8 @@ private:
 	const std::vector<double>& m_distance;
 	LineRegistry               m_registry;
 
-	double m_side = 1.0; // of the half line being traced: +1, then -1: arc lengths of the second are negative
+	// of the half line being traced: +1, then -1: arc lengths of the second are negative
+	double m_side = 1.0;
 
 	Points                  m_points; // of all finished lines
 	std::vector<TracedLine> m_lines;
@@ -105,12 +110,12 @@ void FamilyTracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 {
 	m_registry.add(
 		{from.position,
-		 to.position,
-		 (from.normal + to.normal).normalized(),
-		 from.cell,
-		 to.cell,
-		 currentLine(),
-		 0.5 * (from.arc + to.arc)});
+	     to.position,
+	     (from.normal + to.normal).normalized(),
+	     from.cell,
+	     to.cell,
+	     currentLine(),
+	     0.5 * (from.arc + to.arc)});
 }
 
 // A step that ended beyond a rim or crease, again as far as it goes this side of it.
@@ -121,7 +126,8 @@ void FamilyTracer::reachOut(const FlowPoint& from, Points& half)
 	double       reached = 0.0, beyond = 1.0;
 	for (int k = 0; k < RimBisections; ++k) {
 		const double middle = 0.5 * (reached + beyond);
-		if (m_flow.sampleAt(from.position + middle * step * from.direction, from, tried) && !m_flow.leftCloud(tried)) {
+		if (m_flow.sampleAt(from.position + middle * step * from.direction, from, tried) &&
+		    !m_flow.leftCloud(tried)) {
 			reached = middle;
 			best    = tried;
 		}
@@ -152,14 +158,15 @@ LineEnd FamilyTracer::traceHalf(const FlowPoint& start, Points& half, const Prog
 			return LineEnd::Umbilic;
 		// A line that comes back next to its start would be stopped by it. The offset is noise, and closing
 		// is better than two ends side by side. It is less than the room other lines leave.
-		const Vector3d toStart = start.position - next.position;
-		const double   ahead   = toStart.dot(next.direction);
-		const double   aside   = (toStart - ahead * next.direction).norm();
-		const double   step    = (next.position - front.position).norm();
-		const double   d       = std::max(distance(next.cell), 2.0 * step);
-		const bool approaches  = m_side > 0.0 && next.arc > 2.0 * step && ahead > 0.0 &&
-								ahead < OwnArc * d && aside < OwnDistance * m_options.stopFactor * d &&
-								next.direction.dot(start.direction) > SameDirection;
+		const Vector3d toStart    = start.position - next.position;
+		const double   ahead      = toStart.dot(next.direction);
+		const double   aside      = (toStart - ahead * next.direction).norm();
+		const double   step       = (next.position - front.position).norm();
+		const double   d          = std::max(distance(next.cell), 2.0 * step);
+		const bool     approaches = m_side > 0.0 && next.arc > 2.0 * step && ahead > 0.0 &&
+		                        ahead < OwnArc * d &&
+		                        aside < OwnDistance * m_options.stopFactor * d &&
+		                        next.direction.dot(start.direction) > SameDirection;
 		if (occupied(next, approaches))
 			return LineEnd::Line;
 		registerSegment(front, next);
@@ -184,7 +191,8 @@ void FamilyTracer::closeUp(const FlowPoint& start, Points& half)
 		if (point.arc <= from)
 			continue;
 		FlowPoint moved = point;
-		if (m_flow.sampleAt(point.position + (point.arc - from) / (last.arc - from) * aside, point, moved)) {
+		if (m_flow.sampleAt(
+				point.position + (point.arc - from) / (last.arc - from) * aside, point, moved)) {
 			moved.arc = point.arc;
 			point     = moved;
 		}
@@ -209,11 +217,11 @@ void FamilyTracer::traceThrough(Index seed, Index place, const Progress& progres
 	if (m_registry.occupied(query))
 		return;
 
-	const Index  known = m_registry.size();
-	Points       line;
+	const Index            known = m_registry.size();
+	Points                 line;
 	std::array<LineEnd, 2> ends;
-	ends[1]             = traceHalf(start, line, progress);
-	const bool   closed = ends[1] == LineEnd::None;
+	ends[1]           = traceHalf(start, line, progress);
+	const bool closed = ends[1] == LineEnd::None;
 	if (closed) {
 		ends[0] = LineEnd::None;
 		closeUp(start, line);
@@ -258,7 +266,7 @@ bool isSeed(const CurvatureField& field, const UmbilicRegions& umbilics, Index i
 {
 	const PointStatus status = field.status[i];
 	if (status == PointStatus::TooFewNeighbors || status == PointStatus::Isolated ||
-		status == PointStatus::Invalid)
+	    status == PointStatus::Invalid)
 		return false;
 	return !umbilics.singular[i] && (!umbilics.umbilic[i] || umbilics.region[i] >= 0);
 }
@@ -278,17 +286,18 @@ std::vector<Index> seedsByConfidence(const CurvatureField& field, const UmbilicR
 // In the order of their seeds, the first family first.
 LineNetwork merged(const std::array<FamilyTracer, 2>& families)
 {
-	const auto  count = static_cast<Index>(families[0].points().size() + families[1].points().size());
+	const auto count =
+		static_cast<Index>(families[0].points().size() + families[1].points().size());
 	LineNetwork network;
 	network.vertices.resize(3, count);
 	network.normals.resize(3, count);
 	network.curvature.resize(count);
 	std::array<std::size_t, 2> line = {0, 0}, point = {0, 0};
 	Index                      vertex = 0;
-	const auto more = [&](int f) { return line[f] < families[f].lines().size(); };
+	const auto                 more   = [&](int f) { return line[f] < families[f].lines().size(); };
 	while (more(0) || more(1)) {
-		const bool second = !more(0) || (more(1) && families[1].lines()[line[1]].seed <
-														families[0].lines()[line[0]].seed);
+		const bool          second = !more(0) || (more(1) && families[1].lines()[line[1]].seed <
+                                                        families[0].lines()[line[0]].seed);
 		const FamilyTracer& family = families[second];
 		const TracedLine&   next   = family.lines()[line[second]++];
 		for (Index k = 0; k < next.size; ++k, ++vertex) {
@@ -323,10 +332,10 @@ LineNetwork traceLines(
 	const std::vector<Index> seeds     = seedsByConfidence(field, umbilics);
 	const NeighborLists      proximity = proximityGraph(minimum);
 	const SurfaceFlow        flow(
-		cloud, field, minimum, umbilics, cells, {options.tolerance, options.projection});
+        cloud, field, minimum, umbilics, cells, {options.tolerance, options.projection});
 	LineNetwork best;
 	double      bestMiss = HUGE_VAL, wanted = options.targetVertices;
-	const int   rounds   = options.targetVertices > 0 ? TargetRounds : 1;
+	const int   rounds = options.targetVertices > 0 ? TargetRounds : 1;
 	for (int round = 0; round < rounds; ++round) {
 		const LineSpacing spacing = chooseLineSpacing(cloud, field, minimum, options, wanted);
 		std::array<FamilyTracer, 2> families = {
@@ -338,7 +347,8 @@ LineNetwork traceLines(
 			[&](Index f, const Progress& part) { families[f].run(seeds, part); });
 		LineNetwork network = merged(families);
 		network.epsilon     = spacing.epsilon;
-		network.crossings   = families[0].registry().countCrossings(families[1].registry(), cloud.normals);
+		network.crossings =
+			families[0].registry().countCrossings(families[1].registry(), cloud.normals);
 		if (options.targetVertices <= 0)
 			return network;
 		const double found = std::max<Index>(1, network.crossings);

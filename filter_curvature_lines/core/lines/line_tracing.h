@@ -11,8 +11,8 @@
 namespace curvature_lines {
 
 struct LineTracingOptions : LineSpacingOptions {
-	Index  targetVertices = 0;    // > 0: epsilon is chosen so that about so many crossings result
-	double tolerance      = 0.01; // tau of the adaptive step
+	Index  targetVertices     = 0; // > 0: epsilon is chosen so that about so many crossings result
+	double tolerance          = 0.01; // tau of the adaptive step
 	ProjectionKind projection = ProjectionKind::Mixed;
 	// Lines start at distance d or more from the next of their family, and end below this times d. The papers
 	// have 1: every gap narrower than 2 d ends a line. Measured on a torus: of all gaps 97 % are within .7 d
@@ -24,8 +24,9 @@ struct LineTracingOptions : LineSpacingOptions {
 constexpr double meshStopFactor = 0.5, meshGradation = 0.25;
 
 LineNetwork traceLines(
-	const PointCloud&           cloud,
-	const CurvatureField&       field,     // directions as they should be followed (smoothed or not)
+	const PointCloud& cloud,
+	// directions as they should be followed (smoothed or not)
+	const CurvatureField&       field,
 	const MinimumNeighborhoods& minimum,
 	const UmbilicRegions&       umbilics,
 	const VoronoiCells&         cells,

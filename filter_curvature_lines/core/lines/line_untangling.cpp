@@ -15,18 +15,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double sameFace = 0.5; // dot product of normals
+constexpr double sameFace = 0.5;  // dot product of normals
 constexpr int    rounds   = 1000; // each cuts a vertex at least; a few do
 
 struct Line {
 	std::vector<Index>     vertices;
 	int                    family = 1;
 	bool                   closed = false;
-	std::array<LineEnd, 2> ends {};
+	std::array<LineEnd, 2> ends{};
 
 	Index size() const { return static_cast<Index>(vertices.size()); }
 	Index segments() const { return closed ? size() : size() - 1; }
-	bool  isLine() const { return size() >= (closed ? 3 : 2); }
+	bool isLine() const { return size() >= (closed ? 3 : 2); }
 };
 
 struct Segment {
@@ -69,9 +69,10 @@ std::vector<Crossing> findCrossings(const LineNetwork& lines, const std::vector<
 	Eigen::Matrix3Xd middles(3, count);
 	Eigen::VectorXd  lengths(count);
 	for (Index s = 0; s < count; ++s) {
-		const Vector3d from = lines.vertices.col(segments[s].from), to = lines.vertices.col(segments[s].to);
-		middles.col(s) = 0.5 * (from + to);
-		lengths[s]     = (to - from).norm();
+		const Vector3d from = lines.vertices.col(segments[s].from),
+					   to   = lines.vertices.col(segments[s].to);
+		middles.col(s)      = 0.5 * (from + to);
+		lengths[s]          = (to - from).norm();
 	}
 	if (count == 0)
 		return {};
@@ -83,9 +84,10 @@ std::vector<Crossing> findCrossings(const LineNetwork& lines, const std::vector<
 		search.within(middles.col(s), 2.0 * lengths[s], near);
 		for (const Index other : near) {
 			const auto& [a, b] = std::minmax(s, other);
-			const bool shorter = std::make_pair(lengths[other], other) < std::make_pair(lengths[s], s);
+			const bool shorter =
+				std::make_pair(lengths[other], other) < std::make_pair(lengths[s], s);
 			if (shorter && parts[segments[a].line].family == parts[segments[b].line].family &&
-				areCrossing(lines, segments[a], segments[b]))
+			    areCrossing(lines, segments[a], segments[b]))
 				crossed[s].push_back(other);
 		}
 		std::sort(crossed[s].begin(), crossed[s].end());
@@ -143,7 +145,10 @@ Index costOfEnding(const Line& line, Index at)
 void endAt(Line& line, Index at)
 {
 	if (line.closed) {
-		std::rotate(line.vertices.begin(), line.vertices.begin() + (at + 1) % line.size(), line.vertices.end());
+		std::rotate(
+			line.vertices.begin(),
+			line.vertices.begin() + (at + 1) % line.size(),
+			line.vertices.end());
 		line.closed = false;
 		line.ends   = {LineEnd::Line, LineEnd::Line};
 	}
@@ -209,8 +214,9 @@ LineNetwork untangled(const LineNetwork& lines)
 				changed[a.line] = 1;
 				continue;
 			}
-			const bool    first = costOfEnding(parts[a.line], a.at) <= costOfEnding(parts[b.line], b.at);
-			const Segment cut   = first ? a : b;
+			const bool first =
+				costOfEnding(parts[a.line], a.at) <= costOfEnding(parts[b.line], b.at);
+			const Segment cut = first ? a : b;
 			endAt(parts[cut.line], cut.at);
 			changed[cut.line] = 1;
 		}

@@ -19,8 +19,8 @@ namespace {
 using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
-constexpr double SmallHole   = 12.0; // perimeter in median edges
-constexpr Index  Crumb       = 4;    // faces
+constexpr double SmallHole = 12.0; // perimeter in median edges
+constexpr Index  Crumb     = 4;    // faces
 
 Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadMeshResult& result)
 {
@@ -91,7 +91,7 @@ Index removeIslands(Polygons& polygons)
 		};
 		island[c] =
 			size[c] > 0 && ((size[c] < Crumb && largest > 10 * Crumb) ||
-							std::any_of(polygons.faces.begin(), polygons.faces.end(), liesIn));
+		                    std::any_of(polygons.faces.begin(), polygons.faces.end(), liesIn));
 	}
 	const auto onIsland = [&](const Face& face) { return island[root(face[0])] != 0; };
 	polygons.faces.erase(

@@ -17,11 +17,11 @@ struct QuadMeshResult {
 	PolygonMesh  mesh;
 	MeshTopology topology;
 	Index        crossings = 0;
-	Index        mergedCrossings =
-		0; // of these, joined to another where three lines pass too close together
-	Index discardedLoops = 0; // around holes, along rims, and tangled ones
-	Index tangledLoops   = 0; // of these, that bound no disk: the mesh has a hole the cloud has not
-	Index islands        = 0; // components inside a face of another one, left out
+	// of these, joined to another where three lines pass too close together
+	Index mergedCrossings = 0;
+	Index discardedLoops  = 0; // around holes, along rims, and tangled ones
+	Index tangledLoops = 0; // of these, that bound no disk: the mesh has a hole the cloud has not
+	Index islands      = 0; // components inside a face of another one, left out
 };
 
 // Two-manifold with boundary by construction: each half-edge bounds at most one face, no two edges

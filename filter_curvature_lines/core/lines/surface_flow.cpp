@@ -17,12 +17,14 @@ constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
 constexpr double StartStep       = 0.25;        // at least, of the local spacing: see SurfaceFlow()
 constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
 constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of an umbilical region
-constexpr double CloudReach      = 1.5; // local spacings from the closest point: within the cloud, or in a void of it
-constexpr double VoidReach       = 2.5; // local spacings from the closest point that even a void does not have
-constexpr double VoidWidths[]    = {2.5, 3.5}; // local spacings from within a void to behind it
-constexpr double VoidSlack       = 1.5; // local spacings to the closest point beyond one
-constexpr double CreaseCosine    = 0.8; // normals of points next to each other
-constexpr double CreaseReach     = 2.5; // local spacings that those are apart at most
+// local spacings from the closest point: within the cloud, or in a void of it
+constexpr double CloudReach = 1.5;
+// local spacings from the closest point that even a void does not have
+constexpr double VoidReach    = 2.5;
+constexpr double VoidWidths[] = {2.5, 3.5}; // local spacings from within a void to behind it
+constexpr double VoidSlack    = 1.5;        // local spacings to the closest point beyond one
+constexpr double CreaseCosine = 0.8;        // normals of points next to each other
+constexpr double CreaseReach  = 2.5;        // local spacings that those are apart at most
 
 // The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families apart.
 std::vector<char> swappedRegions(
@@ -37,9 +39,10 @@ std::vector<char> swappedRegions(
 		if (region < 0)
 			continue;
 		for (Index j : minimum.neighbors[i])
-			if (!umbilics.umbilic[j] && cloud.normals.col(i).dot(cloud.normals.col(j)) > SharpTurnCosine)
+			if (!umbilics.umbilic[j] &&
+			    cloud.normals.col(i).dot(cloud.normals.col(j)) > SharpTurnCosine)
 				votes[region] += std::abs(umbilics.d1.col(i).dot(field.d1.col(j))) -
-								 std::abs(umbilics.d1.col(i).dot(field.d2.col(j)));
+				                 std::abs(umbilics.d1.col(i).dot(field.d2.col(j)));
 	}
 	std::vector<char> swapped(votes.size());
 	for (std::size_t r = 0; r < votes.size(); ++r)
@@ -56,13 +59,8 @@ SurfaceFlow::SurfaceFlow(
 	const UmbilicRegions&       umbilics,
 	const VoronoiCells&         cells,
 	const SurfaceFlowOptions&   options) :
-		m_cloud(cloud),
-		m_field(field),
-		m_minimum(minimum),
-		m_umbilics(umbilics),
-		m_cells(cells),
-		m_options(options),
-		m_step(cloud.size()),
+		m_cloud(cloud), m_field(field), m_minimum(minimum), m_umbilics(umbilics), m_cells(cells),
+		m_options(options), m_step(cloud.size()),
 		m_swapped(swappedRegions(cloud, field, minimum, umbilics))
 {
 	for (Index i = 0; i < cloud.size(); ++i) {
@@ -103,7 +101,8 @@ Vector3d SurfaceFlow::directionOf(const SurfaceSample& sample, Index cell, int f
 	return (axis - axis.dot(sample.normal) * sample.normal).normalized();
 }
 
-bool SurfaceFlow::sampleAt(const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const
+bool SurfaceFlow::sampleAt(
+	const Vector3d& position, const FlowPoint& previous, FlowPoint& result) const
 {
 	const Index         closest = m_cells.locate(position, previous.cell);
 	const SurfaceSample sample =
@@ -120,7 +119,7 @@ bool SurfaceFlow::sampleAt(const Vector3d& position, const FlowPoint& previous, 
 		result.direction = -result.direction;
 	result.inwards = sample.inwards;
 	return result.direction.dot(previous.direction) > SharpTurnCosine &&
-		   result.normal.dot(previous.normal) > SharpTurnCosine;
+	       result.normal.dot(previous.normal) > SharpTurnCosine;
 }
 
 // One step of the second-order scheme A09 uses for its error estimate: along the mean of the directions at
@@ -155,7 +154,8 @@ bool SurfaceFlow::leftCloud(const FlowPoint& point) const
 	if (distance > VoidReach * local)
 		return true;
 	const double aside = point.inwards.norm();
-	if (distance < CloudReach * local && (aside < rimOffset || point.inwards.dot(point.direction) > 0.0))
+	if (distance < CloudReach * local &&
+	    (aside < rimOffset || point.inwards.dot(point.direction) > 0.0))
 		return false;
 	if (aside == 0.0)
 		return true;
@@ -166,7 +166,7 @@ bool SurfaceFlow::leftCloud(const FlowPoint& point) const
 		const Index    next   = m_cells.locate(beyond, point.cell);
 		const double   around = VoidSlack * std::max(local, m_minimum.spacing[next]);
 		if ((beyond - m_cells.site(next)).norm() < around &&
-			m_cloud.normals.col(next).dot(point.normal) > SharpTurnCosine)
+		    m_cloud.normals.col(next).dot(point.normal) > SharpTurnCosine)
 			return false;
 	}
 	return true;
@@ -175,9 +175,11 @@ bool SurfaceFlow::leftCloud(const FlowPoint& point) const
 bool SurfaceFlow::isCrease(Index cell) const
 {
 	for (Index j : m_cells.neighbors(cell)) {
-		const bool near = (m_cells.site(j) - m_cells.site(cell)).norm() < CreaseReach * m_minimum.spacing[cell];
+		const bool near =
+			(m_cells.site(j) - m_cells.site(cell)).norm() < CreaseReach * m_minimum.spacing[cell];
 		const double cosine = m_cloud.normals.col(j).dot(m_cloud.normals.col(cell));
-		if (near && cosine < CreaseCosine && cosine > -SharpTurnCosine) // not the other side of a sheet
+		// not the other side of a sheet
+		if (near && cosine < CreaseCosine && cosine > -SharpTurnCosine)
 			return true;
 	}
 	return false;

@@ -42,7 +42,8 @@ public:
 
 	// On the surface near `position`, direction and family of `previous` continued. False where surface or
 	// direction turn by more than 60 degrees.
-	bool sampleAt(const Eigen::Vector3d& position, const FlowPoint& previous, FlowPoint& result) const;
+	bool
+	sampleAt(const Eigen::Vector3d& position, const FlowPoint& previous, FlowPoint& result) const;
 
 	// One step; its length is added to the arc, times `side`. False where there is none to take.
 	bool advance(const FlowPoint& from, double side, FlowPoint& to) const;
@@ -61,8 +62,9 @@ private:
 	const UmbilicRegions&       m_umbilics;
 	const VoronoiCells&         m_cells;
 	SurfaceFlowOptions          m_options;
-	std::vector<double>         m_step;    // N
-	std::vector<char>           m_swapped; // per umbilical region: its d1 continues the d2 around it
+	std::vector<double>         m_step; // N
+	// per umbilical region: its d1 continues the d2 around it
+	std::vector<char> m_swapped;
 };
 
 } // namespace curvature_lines

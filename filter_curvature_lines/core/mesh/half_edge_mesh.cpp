@@ -24,7 +24,7 @@ constexpr double StraightCosine = -0.9;
 struct FaceSide {
 	Index low, high, corner; // corner: position in mesh.faces.indices of the side's first vertex
 	bool  forward;           // from low to high
-	bool  sameEdge(const FaceSide& o) const { return low == o.low && high == o.high; }
+	bool sameEdge(const FaceSide& o) const { return low == o.low && high == o.high; }
 };
 
 std::vector<FaceSide> sortedSides(const PolygonMesh& mesh)
@@ -139,7 +139,7 @@ HalfEdgeGraph::HalfEdgeGraph(
 		const Eigen::Vector3d n = m_normals.col(v);
 		const Eigen::Vector3d x = n.unitOrthogonal(), y = n.cross(x);
 		const auto            angle = [&](Index h) {
-			return std::atan2(tangent(h).dot(y), tangent(h).dot(x));
+            return std::atan2(tangent(h).dot(y), tangent(h).dot(x));
 		};
 		std::vector<std::pair<double, Index>> order;
 		for (Index h : m_around[v])
@@ -239,7 +239,8 @@ bool HalfEdgeGraph::removeDigons()
 		const bool live =
 			std::all_of(loop.begin(), loop.end(), [&](Index h) { return alive(h >> 1); });
 		const Index first = loop[0] >> 1, second = loop.back() >> 1;
-		if (!live || (loop.size() == 2 && (first == second || (m_kept.empty() && !isThin(first, second)))))
+		if (!live ||
+		    (loop.size() == 2 && (first == second || (m_kept.empty() && !isThin(first, second)))))
 			continue;
 		const Index gone = m_edges[first].isFeature ? second : first;
 		if (!m_edges[gone].isFeature)

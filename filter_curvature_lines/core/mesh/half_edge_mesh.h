@@ -35,7 +35,8 @@ public:
 		Eigen::Vector3d tangentFrom, tangentTo; // directions leaving each end along the edge
 		Eigen::Vector3d middle, middleNormal;   // a point of the surface about half-way along
 		bool            isFeature = false;      // a piece of a rim or crease: stays
-		signed char     outside   = -1;         // along rims: 0 or 1, half-edge 2e or 2e + 1 runs outside
+		// along rims: 0 or 1, half-edge 2e or 2e + 1 runs outside
+		signed char outside = -1;
 	};
 
 	// Half-edges are sorted by their tangents.
@@ -51,7 +52,7 @@ public:
 		std::vector<char>               kept);
 
 	static Index twin(Index h) { return h ^ 1; }
-	Index        origin(Index h) const { return h & 1 ? m_edges[h >> 1].to : m_edges[h >> 1].from; }
+	Index origin(Index h) const { return h & 1 ? m_edges[h >> 1].to : m_edges[h >> 1].from; }
 	const Eigen::Vector3d& tangent(Index h) const
 	{
 		return h & 1 ? m_edges[h >> 1].tangentTo : m_edges[h >> 1].tangentFrom;
@@ -66,7 +67,7 @@ public:
 	bool dissolveDegreeTwo();    // joins the two edges of a vertex where they continue each other
 	bool removeDigons(); // one side of faces with two sides, of which it keeps open ones unless the
 						 // embedding is exact; faces with one side
-	void reduce();           // all of them until nothing changes
+	void reduce();       // all of them until nothing changes
 
 	// Puts vertices on edges that join the same two vertices as another, or a vertex with itself,
 	// so that a pair of vertices names an edge.
@@ -83,15 +84,15 @@ public:
 
 	const Eigen::Matrix3Xd& positions() const { return m_positions; }
 	const Eigen::Matrix3Xd& normals() const { return m_normals; }
-	bool                    alive(Index edge) const { return m_alive[edge] != 0; }
-	Index                   edgeCount() const { return static_cast<Index>(m_edges.size()); }
-	Index                   vertexCount() const { return static_cast<Index>(m_around.size()); }
-	const Edge&             edge(Index e) const { return m_edges[e]; }
+	bool alive(Index edge) const { return m_alive[edge] != 0; }
+	Index edgeCount() const { return static_cast<Index>(m_edges.size()); }
+	Index vertexCount() const { return static_cast<Index>(m_around.size()); }
+	const Edge& edge(Index e) const { return m_edges[e]; }
 
 private:
-	bool  isThin(Index edgeA, Index edgeB) const;
-	bool  continuesStraight(Index vertex) const;
-	void  splitEdge(Index edge);
+	bool isThin(Index edgeA, Index edgeB) const;
+	bool continuesStraight(Index vertex) const;
+	void splitEdge(Index edge);
 	Index addVertex(const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
 
 	Eigen::Matrix3Xd                m_positions, m_normals;

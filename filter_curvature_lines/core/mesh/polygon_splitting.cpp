@@ -20,9 +20,9 @@ using Eigen::Vector3d;
 
 constexpr double Forbidden = std::numeric_limits<double>::infinity();
 constexpr double Straight  = 180.0;
-constexpr double ReflexCorner =
-	185.0; // degrees; a line that ends on another makes 180, which is no flaw
-constexpr double LeastAngle = 2.0; // degrees between a diagonal and the sides at its ends
+// degrees; a line that ends on another makes 180, which is no flaw
+constexpr double ReflexCorner = 185.0;
+constexpr double LeastAngle   = 2.0; // degrees between a diagonal and the sides at its ends
 
 double square(double x)
 {
@@ -84,9 +84,9 @@ public:
 	{
 		return std::min(
 			{angle(j, i, next(i)),
-			 angle(previous(i), i, j),
-			 angle(i, j, next(j)),
-			 angle(previous(j), j, i)});
+		     angle(previous(i), i, j),
+		     angle(i, j, next(j)),
+		     angle(previous(j), j, i)});
 	}
 
 private:
@@ -96,7 +96,7 @@ private:
 		if (corners == 3) // no quad: dearer than any quad of about right angles
 			return square(degrees - 60.0) + square(30.0);
 		return corners == 4 || degrees > ReflexCorner ? right
-													  : std::min(right, square(degrees - Straight));
+		                                              : std::min(right, square(degrees - Straight));
 	}
 
 	bool pointsInside(Index i, Index j) const
@@ -143,7 +143,7 @@ PolygonSplitter::PolygonSplitter(const PolygonMesh& mesh)
 std::uint64_t PolygonSplitter::key(Index a, Index b)
 {
 	return (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
-		   static_cast<std::uint32_t>(std::max(a, b));
+	       static_cast<std::uint32_t>(std::max(a, b));
 }
 
 template<class Error>
@@ -218,7 +218,8 @@ void PolygonSplitter::triangulate()
 	cutWhileAny([](const FlatPolygon& flat, Index i, Index j) { return -flat.leastAngleAt(i, j); });
 	// Slivers and faces folded over have no diagonal inside.
 	cutWhileAny(
-		[](const FlatPolygon& flat, Index i, Index j) { return flat.distance(i, j); }, Diagonals::Any);
+		[](const FlatPolygon& flat, Index i, Index j) { return flat.distance(i, j); },
+		Diagonals::Any);
 	// What no diagonal can cut because each is an edge elsewhere becomes a star about a new vertex.
 	const std::size_t count = m_faces.size();
 	for (std::size_t f = 0; f < count; ++f) {

@@ -32,9 +32,9 @@ private:
 	template<class Error>
 	Cut bestCut(const Face& face, const Error& error, Diagonals = Diagonals::Inside) const;
 	template<class Error>
-	void                 cutWhileAny(const Error& error, Diagonals = Diagonals::Inside);
-	bool                 cut(const Face& face, const Cut& cut, Face& first, Face& second);
-	bool                 isEdge(Index a, Index b) const { return m_edges.count(key(a, b)) != 0; }
+	void cutWhileAny(const Error& error, Diagonals = Diagonals::Inside);
+	bool cut(const Face& face, const Cut& cut, Face& first, Face& second);
+	bool isEdge(Index a, Index b) const { return m_edges.count(key(a, b)) != 0; }
 	static std::uint64_t key(Index a, Index b);
 
 	std::vector<Eigen::Vector3d>      m_vertices, m_normals;

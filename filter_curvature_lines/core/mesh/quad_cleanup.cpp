@@ -66,8 +66,8 @@ public:
 		}
 		if (rims == 1)
 			return rim;
-		Index       flattest = 0;
-		double      least    = 2.0;
+		Index  flattest = 0;
+		double least    = 2.0;
 		for (Index k = 0; k < 5; ++k) {
 			const Vector3d a      = m_vertices[face[(k + 4) % 5]] - m_vertices[face[k]];
 			const Vector3d b      = m_vertices[face[(k + 1) % 5]] - m_vertices[face[k]];
@@ -83,7 +83,7 @@ public:
 private:
 	using Sides = std::unordered_map<std::uint64_t, Gate>;
 
-	Index                sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
+	Index sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
 	Sides::const_iterator behind(const Gate& g) const
 	{
 		const Face& face = m_faces[g.face];

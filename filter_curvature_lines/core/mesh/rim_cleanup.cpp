@@ -30,9 +30,12 @@ struct Collapse {
 class RimTriangles {
 public:
 	RimTriangles(
-		const std::vector<Face>& faces, const Eigen::Matrix3Xd& vertices, const std::vector<char>& onFeature) :
-			m_faces(faces), m_vertices(vertices), m_onFeature(onFeature), m_valence(vertices.cols(), 0),
-			m_before(vertices.cols(), -1), m_after(vertices.cols(), -1), m_longest(vertices.cols(), 0.0)
+		const std::vector<Face>& faces,
+		const Eigen::Matrix3Xd&  vertices,
+		const std::vector<char>& onFeature) :
+			m_faces(faces), m_vertices(vertices), m_onFeature(onFeature),
+			m_valence(vertices.cols(), 0), m_before(vertices.cols(), -1),
+			m_after(vertices.cols(), -1), m_longest(vertices.cols(), 0.0)
 	{
 		std::unordered_map<std::uint64_t, Index> sides;
 		for (const Face& face : faces)
@@ -61,11 +64,12 @@ public:
 		std::vector<Collapse> found;
 		for (Index f = 0; f < static_cast<Index>(m_faces.size()); ++f)
 			for (int k = 0; k < 3 && m_faces[f].size() == 3; ++k) {
-				const Index  a = m_faces[f][k], b = m_faces[f][(k + 1) % 3], c = m_faces[f][(k + 2) % 3];
+				const Index a = m_faces[f][k], b = m_faces[f][(k + 1) % 3],
+							c       = m_faces[f][(k + 2) % 3];
 				const double length = (m_vertices.col(a) - m_vertices.col(b)).norm();
 				if (m_after[a] != b || m_after[c] >= 0 || m_onFeature[c] || m_valence[c] < 4 ||
-					!isLineEnd(a) || !isLineEnd(b) || m_before[a] == m_after[b] ||
-					length > longest * m_longest[c])
+				    !isLineEnd(a) || !isLineEnd(b) || m_before[a] == m_after[b] ||
+				    length > longest * m_longest[c])
 					continue;
 				found.push_back({f, a, b, length});
 			}
@@ -158,7 +162,8 @@ PolygonMesh mergeRimTriangles(const PolygonMesh& mesh, std::vector<char>& onFeat
 			faces[face].clear();
 		}
 		faces.erase(
-			std::remove_if(faces.begin(), faces.end(), [](const Face& f) { return f.empty(); }), faces.end());
+			std::remove_if(faces.begin(), faces.end(), [](const Face& f) { return f.empty(); }),
+			faces.end());
 		for (Face& face : faces)
 			for (Index& v : face)
 				v = into[v];

@@ -9,6 +9,7 @@ namespace curvature_lines {
 
 // Takes the triangles whose side on the rim is up to `longest` of the longest edge at their third corner, shortest
 // first. Ends at corners of the rim stay. `onFeature` marks vertices and shrinks with the mesh.
-PolygonMesh mergeRimTriangles(const PolygonMesh& mesh, std::vector<char>& onFeature, double longest);
+PolygonMesh
+mergeRimTriangles(const PolygonMesh& mesh, std::vector<char>& onFeature, double longest);
 
 } // namespace curvature_lines

@@ -34,7 +34,7 @@ std::vector<Side> sortedSides(const std::vector<Triangle>& triangles)
 			sides.push_back({triangles[t][c], triangles[t][(c + 1) % 3], static_cast<Index>(t), c});
 	std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
 		return std::make_tuple(a.low(), a.high(), a.triangle) <
-			   std::make_tuple(b.low(), b.high(), b.triangle);
+		       std::make_tuple(b.low(), b.high(), b.triangle);
 	});
 	return sides;
 }
@@ -101,7 +101,7 @@ TriangleMesh::TriangleMesh(Eigen::Matrix3Xd positions, std::vector<Triangle> tri
 {
 	for (const Side& side : sortedSides(m_triangles)) {
 		if (m_edges.empty() || m_edges.back().from != side.low() ||
-			m_edges.back().to != side.high())
+		    m_edges.back().to != side.high())
 			m_edges.push_back({side.low(), side.high()});
 		Edge& edge                                     = m_edges.back();
 		(side.from < side.to ? edge.left : edge.right) = side.triangle;

@@ -36,11 +36,11 @@ public:
 	Index edgeCount() const { return static_cast<Index>(m_edges.size()); }
 	Index triangleCount() const { return static_cast<Index>(m_triangles.size()); }
 	const std::vector<Triangle>& triangles() const { return m_triangles; }
-	const std::vector<Edge>&     edges() const { return m_edges; }
+	const std::vector<Edge>& edges() const { return m_edges; }
 
 	// The edge from corner c of a triangle to corner c + 1, and whether the triangle runs along it forwards.
 	Index edgeOf(Index triangle, int c) const { return m_sides[triangle][c]; }
-	bool  isForward(Index triangle, int c) const
+	bool isForward(Index triangle, int c) const
 	{
 		return m_edges[m_sides[triangle][c]].left == triangle;
 	}
@@ -53,7 +53,7 @@ public:
 	Eigen::Vector3d
 	areaVector(Index triangle) const; // along the outward normal, as long as the area
 
-	Eigen::VectorXd  vertexAreas() const;   // a third of the triangles around
+	Eigen::VectorXd vertexAreas() const;    // a third of the triangles around
 	Eigen::Matrix3Xd vertexNormals() const; // unit, of the triangles around
 	// Half the sum of the cotangents opposite each edge, within [0.05, 3]: weights of differences.
 	Eigen::VectorXd cotangentWeights() const;
@@ -61,7 +61,7 @@ public:
 	// Vertex loops with the surface on the left.
 	std::vector<std::vector<Index>> rims() const;
 	std::vector<Index>
-		  components() const; // of every vertex: the smallest vertex it hangs together with
+	components() const; // of every vertex: the smallest vertex it hangs together with
 	Index eulerCharacteristic() const; // V - E + T over used vertices
 
 private:

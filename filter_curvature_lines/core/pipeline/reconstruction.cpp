@@ -69,11 +69,14 @@ void keepInliers(const PointCloud& cloud, ReconstructionResult& result)
 
 // What a mesh of so few vertices has no use for.
 void thinDenseCloud(
-	const ReconstructionOptions& options, ReconstructionResult& result, StageClock& clock, const Progress& progress)
+	const ReconstructionOptions& options,
+	ReconstructionResult&        result,
+	StageClock&                  clock,
+	const Progress&              progress)
 {
 	const double most = options.pointsPerVertex * options.tracing.targetVertices;
 	if (options.method != ReconstructionOptions::Method::PositionField || !(most > 0.0) ||
-		result.cloud.size() <= std::max(most, double(leastSample)))
+	    result.cloud.size() <= std::max(most, double(leastSample)))
 		return;
 	const std::vector<Index> sample =
 		evenSample(result.cloud, std::max(static_cast<Index>(most), leastSample), progress);
@@ -175,9 +178,9 @@ void fillPositionField(
 	meshing.targetVertices = options.tracing.targetVertices;
 	if (meshing.targetVertices <= 0.0)
 		meshing.targetVertices =
-			options.tracing.epsilon > 0.0 ?
-				std::max(8.0, crossingsFor(result.cloud, result.field, minimum, options.tracing)) :
-				double(automaticTargetVertices(result.cloud.size()));
+			options.tracing.epsilon > 0.0
+				? std::max(8.0, crossingsFor(result.cloud, result.field, minimum, options.tracing))
+				: double(automaticTargetVertices(result.cloud.size()));
 	const double edge = std::sqrt(areaOf(minimum) / meshing.targetVertices);
 
 	std::vector<FeatureLine> lines;
@@ -198,8 +201,8 @@ void fillPositionField(
 	meshing.mesh       = options.mesh;
 	meshing.keepLines  = options.keepLines;
 	result.mesh        = buildPositionFieldMesh(
-		result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, "Building the mesh"));
-	result.lines       = std::move(result.mesh.lines);
+        result.cloud, result.field, lines, meshing, progress.sub(0.2, 1.0, "Building the mesh"));
+	result.lines = std::move(result.mesh.lines);
 	clock.book("mesh");
 }
 
@@ -230,22 +233,22 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 
 	std::optional<Neighborhoods> around;
 	const auto                   estimate = [&](const Progress& part) {
-		around.emplace(
-			result.cloud, options.neighborhood, part.sub(0.0, 0.1, "Finding neighborhoods"));
-		clock.book("neighborhoods");
-		result.field = estimateCurvature(
-			result.cloud,
-			around->search,
-			around->minimum,
-			options.curvature,
-			part.sub(0.1, 1.0, "Estimating curvature"));
-		clock.book("curvature");
+        around.emplace(
+            result.cloud, options.neighborhood, part.sub(0.0, 0.1, "Finding neighborhoods"));
+        clock.book("neighborhoods");
+        result.field = estimateCurvature(
+            result.cloud,
+            around->search,
+            around->minimum,
+            options.curvature,
+            part.sub(0.1, 1.0, "Estimating curvature"));
+        clock.book("curvature");
 	};
 	// Denoised points lie on a smooth surface of its own small waves, which an estimate on them follows and
 	// cannot tell from shape: with directions from the noisy points a mesh is two to four times better aligned.
 	const bool first = options.method == ReconstructionOptions::Method::PositionField &&
-					   options.denoising.method == DenoisingOptions::Method::Robust &&
-					   options.curvature.scaleMode == ScaleMode::Adaptive;
+	                   options.denoising.method == DenoisingOptions::Method::Robust &&
+	                   options.curvature.scaleMode == ScaleMode::Adaptive;
 	if (first)
 		estimate(progress.sub(0.2, 0.35, ""));
 	if (options.denoise) {
@@ -269,7 +272,8 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 	if (!first)
 		estimate(progress.sub(0.5, 0.65, ""));
 	else if (options.denoise)
-		around.emplace(result.cloud, options.neighborhood, progress.sub(0.5, 0.65, "Finding neighborhoods"));
+		around.emplace(
+			result.cloud, options.neighborhood, progress.sub(0.5, 0.65, "Finding neighborhoods"));
 	if (options.curvature.scaleMode == ScaleMode::Adaptive) {
 		if (!first || !options.denoise)
 			result.cloud.normals = result.field.correctedNormals;

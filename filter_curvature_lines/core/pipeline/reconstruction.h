@@ -13,8 +13,8 @@
 #include "curvature_estimate.h"
 #include "denoising.h"
 #include "direction_smoothing.h"
-#include "outlier_rejection.h"
 #include "line_tracing.h"
+#include "outlier_rejection.h"
 #include "position_field_mesh.h"
 #include "quad_mesh.h"
 #include "umbilics.h"
@@ -35,14 +35,17 @@ struct ReconstructionOptions {
 	DenoisingOptions           denoising;
 	DirectionSmoothingOptions  directions;
 	UmbilicOptions             umbilics;
-	LineTracingOptions tracing; // targetVertices 0 and epsilon 0: from the size of the cloud; both methods
-	CreaseOptions      creases;  // PositionField
+	// targetVertices 0 and epsilon 0: from the size of the cloud; both methods
+	LineTracingOptions tracing;
+	CreaseOptions      creases; // PositionField
 	// PositionField with tracing.targetVertices: denser clouds are thinned to so many points per vertex, but not
 	// below 20 000 points, once the outliers are out. 0: all are used.
-	double             pointsPerVertex = 24.0;
-	double             anisotropy = 1.5; // PositionField: largest ratio of the line spacings in a place
-	QuadMeshOptions    mesh;
-	bool               keepLines = false; // PositionField: its lines as polylines; traced ones are always kept
+	double pointsPerVertex = 24.0;
+	// PositionField: largest ratio of the line spacings in a place
+	double          anisotropy = 1.5;
+	QuadMeshOptions mesh;
+	// PositionField: its lines as polylines; traced ones are always kept
+	bool keepLines = false;
 
 	ReconstructionOptions()
 	{
@@ -53,17 +56,19 @@ struct ReconstructionOptions {
 };
 
 struct ReconstructionResult {
-	std::vector<char>  outlier; // per input point
-	std::vector<Index> kept;    // input index of each point of `cloud`: no outliers, a sample of dense clouds
-	PointCloud         cloud;   // cleaned; with the estimate's normals unless scaleMode is Paper
-	CurvatureField     field;   // of the cleaned cloud, directions as the lines followed them
-	UmbilicRegions     umbilics;
-	LineNetwork        lines;   // TracedLines, or if keepLines
-	Creases            creases; // PositionField
-	PositionFieldMeshResult mesh; // TracedLines: without what is particular to position fields
-	double             noise = 0.0; // standard deviation of heights, if robustly cleaned of outliers or noise
-	double             rmsMove = 0.0;      // by denoising
-	std::map<std::string, double> seconds; // per stage: outliers, neighborhoods, curvature, …
+	std::vector<char> outlier; // per input point
+	// input index of each point of `cloud`: no outliers, a sample of dense clouds
+	std::vector<Index>      kept;
+	PointCloud              cloud; // cleaned; with the estimate's normals unless scaleMode is Paper
+	CurvatureField          field; // of the cleaned cloud, directions as the lines followed them
+	UmbilicRegions          umbilics;
+	LineNetwork             lines;   // TracedLines, or if keepLines
+	Creases                 creases; // PositionField
+	PositionFieldMeshResult mesh;    // TracedLines: without what is particular to position fields
+	// standard deviation of heights, if robustly cleaned of outliers or noise
+	double                        noise   = 0.0;
+	double                        rmsMove = 0.0; // by denoising
+	std::map<std::string, double> seconds;       // per stage: outliers, neighborhoods, curvature, …
 };
 
 // The mesh may come out empty (too sparse a cloud); that is for the caller to report.

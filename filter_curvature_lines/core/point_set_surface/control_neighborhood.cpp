@@ -17,7 +17,8 @@ constexpr double isolated = 3.0; // spacings
 constexpr double gridPoints = 3.6;
 constexpr double fewest     = 0.4; // of that
 constexpr double farAway    = 1e30;
-constexpr double opposing   = -0.34; // cosine: faces at a right angle are one sheet, those of a thin plate two
+// cosine: faces at a right angle are one sheet, those of a thin plate two
+constexpr double opposing = -0.34;
 
 // Offsets of four points from a place, and their Gaussian weights.
 struct Offsets {
@@ -34,8 +35,8 @@ inline void offsetsAt(
 	toExpOfNegative(d.weight);
 }
 
-CURVATURE_LINES_AVX2_CLONE void addUp(
-	const double* rows, int padded, const Vector3d& place, double sharpness, NormalSums& sums)
+CURVATURE_LINES_AVX2_CLONE void
+addUp(const double* rows, int padded, const Vector3d& place, double sharpness, NormalSums& sums)
 {
 	Block weight = {}, plane = {}, offset[3] = {}, normal[3] = {};
 	for (int s = 0; s < padded; s += blockSize) {
@@ -43,7 +44,7 @@ CURVATURE_LINES_AVX2_CLONE void addUp(
 		offsetsAt(rows, padded, s, place, sharpness, d);
 		const Block nx = blockAt(rows + 3 * padded + s), ny = blockAt(rows + 4 * padded + s),
 					nz = blockAt(rows + 5 * padded + s);
-		const Block w = d.weight;
+		const Block w  = d.weight;
 		weight += w;
 		offset[0] += w * d.x;
 		offset[1] += w * d.y;
@@ -59,8 +60,8 @@ CURVATURE_LINES_AVX2_CLONE void addUp(
 	sums.plane  = sumOf(plane);
 }
 
-CURVATURE_LINES_AVX2_CLONE void addUp(
-	const double* rows, int padded, const Vector3d& place, double sharpness, PlaneSums& sums)
+CURVATURE_LINES_AVX2_CLONE void
+addUp(const double* rows, int padded, const Vector3d& place, double sharpness, PlaneSums& sums)
 {
 	Block weight = {}, offset[3] = {}, xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
 	for (int s = 0; s < padded; s += blockSize) {
@@ -78,8 +79,8 @@ CURVATURE_LINES_AVX2_CLONE void addUp(
 		yz += wy * d.z;
 		zz += wz * d.z;
 	}
-	sums.weight = sumOf(weight);
-	sums.offset = {sumOf(offset[0]), sumOf(offset[1]), sumOf(offset[2])};
+	sums.weight      = sumOf(weight);
+	sums.offset      = {sumOf(offset[0]), sumOf(offset[1]), sumOf(offset[2])};
 	const double sxy = sumOf(xy), sxz = sumOf(xz), syz = sumOf(yz);
 	sums.square << sumOf(xx), sxy, sxz, sxy, sumOf(yy), syz, sxz, syz, sumOf(zz);
 }
@@ -124,19 +125,20 @@ bool ControlNeighborhood::gather(
 	const Eigen::Matrix3Xd& normals   = control.cloud.normals;
 	const auto squaredDistance = [&](Index j) { return (positions.col(j) - place).squaredNorm(); };
 
-	const double radius = reach * control.spacing[closest], far = isolated * control.spacing[closest];
+	const double radius = reach * control.spacing[closest],
+				 far    = isolated * control.spacing[closest];
 	if (!(radius > 0.0) || squaredDistance(closest) > far * far)
 		return false;
 	m_side            = normals.col(closest);
 	const auto enough = static_cast<std::size_t>(gridPoints * reach * reach);
 	const auto split  = [&] {
-		m_near.clear();
-		m_opposing.clear();
-		for (const Index j : m_found)
-			if (normals.col(j).dot(m_side) > opposing)
-				m_near.emplace_back(squaredDistance(j), j);
-			else
-				m_opposing.push_back({positions.col(j), normals.col(j)});
+        m_near.clear();
+        m_opposing.clear();
+        for (const Index j : m_found)
+            if (normals.col(j).dot(m_side) > opposing)
+                m_near.emplace_back(squaredDistance(j), j);
+            else
+                m_opposing.push_back({positions.col(j), normals.col(j)});
 	};
 	control.search.within(place, radius, m_found);
 	split();
@@ -153,7 +155,8 @@ bool ControlNeighborhood::gather(
 	m_padded = (m_size + blockSize - 1) / blockSize * blockSize;
 	m_rows.resize(std::size_t(6) * m_padded);
 	for (int r = 0; r < 6; ++r)
-		std::fill(m_rows.begin() + r * m_padded + m_size, m_rows.begin() + (r + 1) * m_padded, farAway);
+		std::fill(
+			m_rows.begin() + r * m_padded + m_size, m_rows.begin() + (r + 1) * m_padded, farAway);
 	double total = 0.0;
 	m_spacing    = 0.0;
 	for (int k = 0; k < m_size; ++k) {

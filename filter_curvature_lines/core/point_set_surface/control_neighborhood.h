@@ -39,14 +39,15 @@ public:
 	// The same around a control point.
 	bool gather(const ControlPoints& control, Index point, double reach);
 
-	double                 spacing() const { return m_spacing; } // around, length: changes gradually
-	const Eigen::Vector3d& side() const { return m_side; }       // normal of the closest point
-	int                    size() const { return m_size; }
-	Eigen::Vector3d        position(int k) const { return {row(0)[k], row(1)[k], row(2)[k]}; }
-	Eigen::Vector3d        normal(int k) const { return {row(3)[k], row(4)[k], row(5)[k]}; }
+	// around, length: changes gradually
+	double spacing() const { return m_spacing; }
+	const Eigen::Vector3d& side() const { return m_side; } // normal of the closest point
+	int size() const { return m_size; }
+	Eigen::Vector3d position(int k) const { return {row(0)[k], row(1)[k], row(2)[k]}; }
+	Eigen::Vector3d normal(int k) const { return {row(3)[k], row(4)[k], row(5)[k]}; }
 
 	NormalSums normalSums(const Eigen::Vector3d& place, double h) const;
-	PlaneSums  planeSums(const Eigen::Vector3d& place, double h) const;
+	PlaneSums planeSums(const Eigen::Vector3d& place, double h) const;
 	// Whether points on other sheets are around.
 	bool besideOthers() const { return !m_opposing.empty(); }
 	// How far a place on this sheet, with this normal, lies past the edge where a sheet behind it ends it;
@@ -54,24 +55,28 @@ public:
 	double pastEdge(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const;
 	// Heights over the tangent plane at a place, in units of h, with the same weights.
 	void heights(
-		const Eigen::Vector3d& place, const TangentFrame& frame, double h, LocalSamples<1>& samples) const;
+		const Eigen::Vector3d& place,
+		const TangentFrame&    frame,
+		double                 h,
+		LocalSamples<1>&       samples) const;
 
 private:
 	struct OrientedPoint {
 		Eigen::Vector3d position, normal;
 	};
 
-	bool gather(
-		const ControlPoints& control, const Eigen::Vector3d& place, Index closest, double reach);
+	bool
+	gather(const ControlPoints& control, const Eigen::Vector3d& place, Index closest, double reach);
 	const double* row(int r) const { return m_rows.data() + std::size_t(r) * m_padded; }
 
 	std::vector<double> m_rows; // x, y, z and the normals' components; padded with points far away
 	int                 m_size = 0, m_padded = 0;
 	double              m_spacing = 0.0;
 	Eigen::Vector3d     m_side    = Eigen::Vector3d::Zero();
-	std::vector<OrientedPoint>            m_opposing; // around, on other sheets
-	std::vector<Index>                    m_found;    // scratch of gather()
-	std::vector<std::pair<double, Index>> m_near;     // likewise: squared distances, points of the sheet
+	std::vector<OrientedPoint> m_opposing; // around, on other sheets
+	std::vector<Index>         m_found;    // scratch of gather()
+	// likewise: squared distances, points of the sheet
+	std::vector<std::pair<double, Index>> m_near;
 };
 
 } // namespace curvature_lines

@@ -26,7 +26,8 @@ CurvatureDrivenSurface::CurvatureDrivenSurface(
 	const ControlPoints& control, const CurvatureDrivenOptions& options) :
 		PointSetSurface(
 			control,
-			std::max(gaussianReach * options.bandwidth, curvatureReach * options.curvatureBandwidth),
+			std::max(
+				gaussianReach * options.bandwidth, curvatureReach * options.curvatureBandwidth),
 			gaussianReach * options.bandwidth),
 		m_options(options)
 {
@@ -56,8 +57,8 @@ double CurvatureDrivenSurface::heightAlong(
 }
 
 // Steps 3 and 4: onto the surface along the normal at `from`.
-std::optional<CurvatureDrivenSurface::Base> CurvatureDrivenSurface::diffuse(
-	const ControlNeighborhood& around, const Vector3d& from) const
+std::optional<CurvatureDrivenSurface::Base>
+CurvatureDrivenSurface::diffuse(const ControlNeighborhood& around, const Vector3d& from) const
 {
 	const double h    = m_options.bandwidth * around.spacing();
 	Base         base = {from, Vector3d::Zero()};
@@ -72,7 +73,7 @@ std::optional<CurvatureDrivenSurface::Base> CurvatureDrivenSurface::diffuse(
 		// allow it.
 		const double slope  = before - height;
 		const bool   secant = step > 0 && m_options.diffusion == Diffusion::Hermite &&
-			slope * move > 0.5 * move * move;
+		                    slope * move > 0.5 * move * move;
 		move   = secant ? height * move / slope : height;
 		before = height;
 		base.point += move * along;
@@ -89,8 +90,8 @@ std::optional<CurvatureDrivenSurface::Base> CurvatureDrivenSurface::diffuse(
 }
 
 // Steps 5 and 6: principal curvatures and directions there. M weights only here.
-std::optional<LocalQuadric> CurvatureDrivenSurface::quadricAt(
-	const ControlNeighborhood& around, const Base& base) const
+std::optional<LocalQuadric>
+CurvatureDrivenSurface::quadricAt(const ControlNeighborhood& around, const Base& base) const
 {
 	thread_local LocalSamples<1> samples;
 	const TangentFrame           frame(base.normal);
@@ -98,7 +99,7 @@ std::optional<LocalQuadric> CurvatureDrivenSurface::quadricAt(
 	around.heights(base.point, frame, h, samples);
 	for (int s = 0; s < samples.size(); ++s) {
 		const double square = samples.x[s] * samples.x[s] + samples.y[s] * samples.y[s] +
-			samples.value[0][s] * samples.value[0][s];
+		                      samples.value[0][s] * samples.value[0][s];
 		double w = samples.weight[s]; // T06 eq. 10: x^(2 xi) exp(-x^2 / h^2)
 		for (Index power = 0; power < m_options.curvatureExponent; ++power)
 			w *= square;
@@ -118,8 +119,8 @@ std::optional<LocalQuadric> CurvatureDrivenSurface::quadricAt(
 	return quadric;
 }
 
-std::optional<LocalQuadric> CurvatureDrivenSurface::near(
-	const ControlNeighborhood& around, const Vector3d& place) const
+std::optional<LocalQuadric>
+CurvatureDrivenSurface::near(const ControlNeighborhood& around, const Vector3d& place) const
 {
 	// 1, 2: the quasi-tangent plane (o, l) and the foot q of the place on it.
 	const NormalSums sums = around.normalSums(place, m_options.bandwidth * around.spacing());
@@ -132,8 +133,8 @@ std::optional<LocalQuadric> CurvatureDrivenSurface::near(
 	return quadricAt(around, *base);
 }
 
-std::optional<LocalQuadric> CurvatureDrivenSurface::roughlyAt(
-	const ControlNeighborhood& around, const Vector3d& place) const
+std::optional<LocalQuadric>
+CurvatureDrivenSurface::roughlyAt(const ControlNeighborhood& around, const Vector3d& place) const
 {
 	return quadricAt(around, {place, around.side()});
 }

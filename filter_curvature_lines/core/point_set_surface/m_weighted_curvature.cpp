@@ -12,29 +12,32 @@ namespace curvature_lines {
 namespace {
 
 // Points whose w is below this share of its peak do not count (T06 section 6, value unpublished).
-constexpr double smallestShare = 1e-3;
+constexpr double smallestShare    = 1e-3;
 constexpr double fewestDirections = 4.0; // one more than unknowns
 
 // Of rows (1, cos 2 phi, sin 2 phi).
 struct EulerSums {
-	Eigen::Matrix3d normal; // sum w row row^T
-	Eigen::Matrix3d spread; // sum w^2 row row^T: for the error
-	Eigen::Vector3d rhs;    // sum w k row
+	Eigen::Matrix3d normal;        // sum w row row^T
+	Eigen::Matrix3d spread;        // sum w^2 row row^T: for the error
+	Eigen::Vector3d rhs;           // sum w k row
 	double          squares = 0.0; // sum w k^2
 	double          count   = 0.0; // of weights that are not 0
 };
 
 CURVATURE_LINES_AVX2_CLONE void addUp(const LocalSamples<1>& samples, int padded, EulerSums& sums)
 {
-	Block n1 = {}, nc = {}, ns = {}, ncc = {}, ncs = {}, q1 = {}, qc = {}, qs = {}, qcc = {}, qcs = {};
+	Block n1 = {}, nc = {}, ns = {}, ncc = {}, ncs = {}, q1 = {}, qc = {}, qs = {}, qcc = {},
+		  qcs = {};
 	Block r1 = {}, rc = {}, rs = {}, squares = {}, count = {};
 	for (int s = 0; s < padded; s += blockSize) {
-		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]), z = blockAt(&samples.value[0][s]);
+		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]),
+					z  = blockAt(&samples.value[0][s]);
 		const Block xx = x * x, yy = y * y, square = xx + yy;
-		const Block w       = square > 0.0 ? Block(blockAt(&samples.weight[s])) : Block {};
+		const Block w       = square > 0.0 ? Block(blockAt(&samples.weight[s])) : Block{};
 		const Block inverse = 1.0 / (square > 0.0 ? square : square + 1.0);
 		const Block c = (xx - yy) * inverse, si = 2.0 * x * y * inverse; // of twice the angle
-		const Block k = -2.0 * z / (square > 0.0 ? square + z * z : square + 1.0); // T06 eq. 6, the sign ours
+		// T06 eq. 6, the sign ours
+		const Block k  = -2.0 * z / (square > 0.0 ? square + z * z : square + 1.0);
 		const Block wc = w * c, ws = w * si, wk = w * k, ww = w * w, wwc = ww * c;
 		n1 += w;
 		nc += wc;
@@ -50,7 +53,7 @@ CURVATURE_LINES_AVX2_CLONE void addUp(const LocalSamples<1>& samples, int padded
 		rc += wk * c;
 		rs += wk * si;
 		squares += wk * k;
-		count += w > 0.0 ? Block {} + 1.0 : Block {};
+		count += w > 0.0 ? Block{} + 1.0 : Block{};
 	}
 	const auto symmetric = [](double one, double c, double s, double cc, double cs) {
 		Eigen::Matrix3d m;
@@ -143,7 +146,7 @@ CurvatureField mWeightedCurvature(
 	const Index    n = cloud.size();
 	CurvatureField field;
 	for (auto* values :
-		 {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence, &field.feature})
+	     {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence, &field.feature})
 		values->setZero(n);
 	for (auto* vectors : {&field.d1, &field.d2})
 		vectors->resize(3, n);
@@ -157,7 +160,7 @@ CurvatureField mWeightedCurvature(
 		const TangentFrame    frame(normal);
 		const double          h = options.bandwidth * minimum.spacing[i];
 		thread_local LocalSamples<1> samples;
-		std::vector<Index>    near = search.nearest(position, options.neighbors + 1);
+		std::vector<Index>           near = search.nearest(position, options.neighbors + 1);
 		std::sort(near.begin(), near.end());
 		samples.reserve(near.size());
 		double total = 0.0;
@@ -169,7 +172,11 @@ CurvatureField mWeightedCurvature(
 			if (!(weight > 0.0))
 				continue;
 			const Eigen::Vector2d projected = frame.toPlane(offset);
-			samples.add(projected.x(), projected.y(), weight, Eigen::Matrix<double, 1, 1>(offset.dot(frame.n)));
+			samples.add(
+				projected.x(),
+				projected.y(),
+				weight,
+				Eigen::Matrix<double, 1, 1>(offset.dot(frame.n)));
 			rows[i].push_back(j);
 			weights[i].push_back(weight);
 			total += weight;

@@ -24,10 +24,10 @@ double gaussianWeight(double x, double h);
 
 // The least squares of T06 eq. 11 at one place: directional curvatures k(phi) = v1 + v2 cos 2 phi + v3 sin 2 phi.
 struct EulerFit {
-	double          k1 = 0.0, k2 = 0.0;             // convex positive: T06's with the opposite sign
-	Eigen::Vector2d d1 = Eigen::Vector2d::UnitX();  // unit, in the tangent plane
-	double          error = 0.0;                    // standard error of k1 - k2
-	bool            valid = false;                  // the neighbours' directions determine a tensor
+	double          k1 = 0.0, k2 = 0.0; // convex positive: T06's with the opposite sign
+	Eigen::Vector2d d1    = Eigen::Vector2d::UnitX(); // unit, in the tangent plane
+	double          error = 0.0;                      // standard error of k1 - k2
+	bool            valid = false; // the neighbours' directions determine a tensor
 };
 // Samples: heights of neighbours over the tangent plane at the place, which is the origin.
 EulerFit fitEuler(LocalSamples<1>& samples);

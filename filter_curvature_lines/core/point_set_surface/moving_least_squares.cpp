@@ -23,8 +23,8 @@ MovingLeastSquaresSurface::MovingLeastSquaresSurface(
 {
 }
 
-std::optional<LocalQuadric> MovingLeastSquaresSurface::near(
-	const ControlNeighborhood& around, const Vector3d& place) const
+std::optional<LocalQuadric>
+MovingLeastSquaresSurface::near(const ControlNeighborhood& around, const Vector3d& place) const
 {
 	const double h      = m_options.bandwidth * around.spacing();
 	Vector3d     origin = place, normal = Vector3d::Zero();
@@ -32,7 +32,7 @@ std::optional<LocalQuadric> MovingLeastSquaresSurface::near(
 		const PlaneSums sums = around.planeSums(origin, h);
 		if (!(sums.weight > 0.0))
 			return std::nullopt;
-		const Vector3d mean = sums.offset / sums.weight;
+		const Vector3d                                 mean = sums.offset / sums.weight;
 		Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
 		eigen.computeDirect(sums.square / sums.weight - mean * mean.transpose());
 		normal = eigen.eigenvectors().col(0);

@@ -14,15 +14,18 @@ struct MovingLeastSquaresOptions {
 
 class MovingLeastSquaresSurface : public PointSetSurface {
 public:
-	MovingLeastSquaresSurface(const ControlPoints& control, const MovingLeastSquaresOptions& options = {});
+	MovingLeastSquaresSurface(
+		const ControlPoints& control, const MovingLeastSquaresOptions& options = {});
 
 	// The quadratic of weighted least squares over the plane through q = r + t n that minimises
 	// sum <n, p_i - q>^2 exp(-|p_i - q|^2 / h^2); found by turns for n (covariance) and t.
-	std::optional<LocalQuadric> near(
-		const ControlNeighborhood& around, const Eigen::Vector3d& place) const override;
+	std::optional<LocalQuadric>
+	near(const ControlNeighborhood& around, const Eigen::Vector3d& place) const override;
 	// From the same start: plane and quadratic both depend on the place.
 	bool follow(
-		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const override;
+		const ControlNeighborhood& around,
+		const Eigen::Vector3d&     place,
+		LocalQuadric&              quadric) const override;
 
 private:
 	MovingLeastSquaresOptions m_options;

@@ -28,10 +28,10 @@ ProjectedPoints projectPoints(
 			const auto quadric = surface.near(around, point);
 			if (!quadric)
 				return;
-			const Eigen::Vector3d moved   = quadric->foot(point);
-			const bool            settled = (moved - point).norm() < options.tolerance * around.spacing();
-			point                         = moved;
-			iterations[i]          = it;
+			const Eigen::Vector3d moved = quadric->foot(point);
+			const bool settled = (moved - point).norm() < options.tolerance * around.spacing();
+			point              = moved;
+			iterations[i]      = it;
 			if (!settled && it < options.iterations)
 				continue;
 			result.positions.col(i) = point;
@@ -48,22 +48,23 @@ ProjectedPoints projectPoints(
 Eigen::Matrix3Xd
 scatterAround(const ControlPoints& control, const Eigen::Matrix3Xd& positions, Index count)
 {
-	constexpr double   reach = 2.5; // spacings
-	constexpr double   goldenAngle      = 2.399963229728653;
-	const auto         n                = static_cast<Index>(positions.cols());
-	Eigen::Matrix3Xd   scattered(3, std::int64_t(n) * count);
+	constexpr double reach       = 2.5; // spacings
+	constexpr double goldenAngle = 2.399963229728653;
+	const auto       n           = static_cast<Index>(positions.cols());
+	Eigen::Matrix3Xd scattered(3, std::int64_t(n) * count);
 	parallelFor(n, {}, [&](Index i) {
 		thread_local ControlNeighborhood around;
 		const Eigen::Vector3d            center = positions.col(i);
-		const bool known = around.gather(control, center, reach);
+		const bool                       known  = around.gather(control, center, reach);
 		for (Index k = 0; k < count; ++k) {
 			Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 			if (known && k > 0) {
 				// A disk as large as the square of one spacing, along a sunflower spiral turned from vertex to
 				// vertex.
 				const TangentFrame frame(around.side());
-				const double       radius = around.spacing() * std::sqrt((k + 0.5) / (count * double(EIGEN_PI)));
-				const double       angle  = goldenAngle * (k + double(count) * i);
+				const double       radius =
+					around.spacing() * std::sqrt((k + 0.5) / (count * double(EIGEN_PI)));
+				const double angle = goldenAngle * (k + double(count) * i);
 				offset = radius * (std::cos(angle) * frame.u + std::sin(angle) * frame.v);
 			}
 			scattered.col(std::int64_t(i) * count + k) = center + offset;

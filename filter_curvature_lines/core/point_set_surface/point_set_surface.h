@@ -30,7 +30,7 @@ struct LocalQuadric {
 		const Eigen::Vector3d d = position - origin;
 		const double          x = d.dot(u), y = d.dot(v);
 		return (n - (c[1] + 2.0 * c[3] * x + c[4] * y) * u - (c[2] + c[4] * x + 2.0 * c[5] * y) * v)
-			.normalized();
+		    .normalized();
 	}
 };
 
@@ -50,18 +50,20 @@ public:
 		return around.gather(m_control, point, m_followReach + margin);
 	}
 	// Nothing where the points around do not tell.
-	virtual std::optional<LocalQuadric> near(
-		const ControlNeighborhood& around, const Eigen::Vector3d& place) const = 0;
+	virtual std::optional<LocalQuadric>
+	near(const ControlNeighborhood& around, const Eigen::Vector3d& place) const = 0;
 	// A first approximation at the control point that `around` was gathered for: near(), or quicker.
-	virtual std::optional<LocalQuadric> roughlyAt(
-		const ControlNeighborhood& around, const Eigen::Vector3d& place) const
+	virtual std::optional<LocalQuadric>
+	roughlyAt(const ControlNeighborhood& around, const Eigen::Vector3d& place) const
 	{
 		return near(around, place);
 	}
 	// The same as near() for a place less than a spacing away from that of `quadric`, which is replaced: what
 	// may be kept of it saves time. False where the points around do not tell.
 	virtual bool follow(
-		const ControlNeighborhood& around, const Eigen::Vector3d& place, LocalQuadric& quadric) const = 0;
+		const ControlNeighborhood& around,
+		const Eigen::Vector3d&     place,
+		LocalQuadric&              quadric) const = 0;
 
 protected:
 	// How far around a place near() and follow() look, in local spacings.
@@ -81,9 +83,10 @@ struct ProjectionOptions {
 };
 
 struct ProjectedPoints {
-	Eigen::Matrix3Xd positions, normals; // 3 x N; where nothing is near, the position given and no normal
-	std::vector<char> projected;         // N
-	Index            iterations = 0;     // largest number any point needed
+	// 3 x N; where nothing is near, the position given and no normal
+	Eigen::Matrix3Xd  positions, normals;
+	std::vector<char> projected;      // N
+	Index             iterations = 0; // largest number any point needed
 };
 
 // Every point of `positions` (3 x N) projected until it stays.

@@ -23,26 +23,29 @@ struct RayTracer::Passage {
 	bool   done;
 
 	double squaredDistance(double t) const { return (t - closest) * (t - closest) + aside; }
-	bool   encloses(double t) const { return std::abs(t - closest) < half; }
+	bool encloses(double t) const { return std::abs(t - closest) < half; }
 };
 
 namespace {
 
-constexpr Index  sphereNeighbor = 6;    // as far as that from its point a sphere reaches
+constexpr Index sphereNeighbor = 6; // as far as that from its point a sphere reaches
 // Spacings a sphere reaches at least: uneven points leave no gaps between their spheres (68 pixels of the dragon
 // without). Half as far again leaves as few wrong ones, 7 instead of 8, and takes 1.3 to 1.5 times as long.
-constexpr double leastSphere    = 1.3;
-constexpr double largestSphere  = 3.0;  // likewise: lonely points enclose no surface
-constexpr double steepest       = 0.05; // sine of a ray's angle to a plane worth meeting
-constexpr double margin         = 0.5;  // spacings: most places are that close to the point of their sphere
-constexpr double strayed        = 1.8;  // radii: a loop so far from its sphere's centre is given up
-constexpr double turned         = 0.97; // cosine between the normals of a hit and of its sphere's point
-constexpr double behind         = 5.0;  // radii: a back so close to a front is an artefact
+constexpr double leastSphere   = 1.3;
+constexpr double largestSphere = 3.0;  // likewise: lonely points enclose no surface
+constexpr double steepest      = 0.05; // sine of a ray's angle to a plane worth meeting
+// spacings: most places are that close to the point of their sphere
+constexpr double margin  = 0.5;
+constexpr double strayed = 1.8; // radii: a loop so far from its sphere's centre is given up
+// cosine between the normals of a hit and of its sphere's point
+constexpr double turned = 0.97;
+constexpr double behind = 5.0; // radii: a back so close to a front is an artefact
 // Of the march, in spacings: its shortest step; how much farther than the closest control point others still
 // count; how far from the surface the closest alone tells enough.
 constexpr double shortest = 0.35, blend = 0.5, far = 0.4;
-constexpr double beyond  = 0.5;  // radii: so far out of the spheres too, which leave gaps where points are uneven
-constexpr double outline = 1e-3; // cosine of the angle between a normal and a ray there
+// radii: so far out of the spheres too, which leave gaps where points are uneven
+constexpr double beyond  = 0.5;
+constexpr double outline = 1e-3;      // cosine of the angle between a normal and a ray there
 constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
 
 struct Sphere {
@@ -84,15 +87,15 @@ struct SphereCollector {
 
 // The root of the quadric along `direction` from `start` (both in space) that is nearest to start; where there
 // is none, the place of closest approach, and `found` is false.
-double stepToQuadric(
-	const LocalQuadric& q, const Vector3d& start, const Vector3d& direction, bool& found)
+double
+stepToQuadric(const LocalQuadric& q, const Vector3d& start, const Vector3d& direction, bool& found)
 {
-	const Vector3d d  = start - q.origin;
-	const double   x  = d.dot(q.u), y = d.dot(q.v), z = d.dot(q.n);
+	const Vector3d d = start - q.origin;
+	const double   x = d.dot(q.u), y = d.dot(q.v), z = d.dot(q.n);
 	const double   dx = direction.dot(q.u), dy = direction.dot(q.v), dz = direction.dot(q.n);
-	const double   a  = q.c[3] * dx * dx + q.c[4] * dx * dy + q.c[5] * dy * dy;
-	const double   b  = q.c[1] * dx + q.c[2] * dy + 2.0 * q.c[3] * x * dx + q.c[4] * (x * dy + y * dx) +
-		2.0 * q.c[5] * y * dy - dz;
+	const double   a = q.c[3] * dx * dx + q.c[4] * dx * dy + q.c[5] * dy * dy;
+	const double   b = q.c[1] * dx + q.c[2] * dy + 2.0 * q.c[3] * x * dx +
+	                 q.c[4] * (x * dy + y * dx) + 2.0 * q.c[5] * y * dy - dz;
 	const double c            = q.height(x, y) - z;
 	const double discriminant = b * b - 4.0 * a * c;
 	found                     = discriminant >= 0.0 && (a != 0.0 || b != 0.0);
@@ -111,7 +114,8 @@ Camera Camera::facing(const PointCloud& cloud, double aspectRatio, double fieldO
 	camera.fieldOfView = fieldOfView;
 	if (cloud.size() == 0)
 		return camera;
-	const Vector3d low = cloud.positions.rowwise().minCoeff(), high = cloud.positions.rowwise().maxCoeff();
+	const Vector3d low     = cloud.positions.rowwise().minCoeff(),
+				   high    = cloud.positions.rowwise().maxCoeff();
 	camera.target          = 0.5 * (low + high);
 	const Vector3d outward = cloud.normals.rowwise().mean();
 	// Of a closed surface normals cancel.
@@ -123,15 +127,16 @@ Camera Camera::facing(const PointCloud& cloud, double aspectRatio, double fieldO
 
 	// The nearest place from which all points are in the picture.
 	const Vector3d right = (-from).cross(camera.up).normalized(), up = right.cross(-from);
-	const double   half  = std::tan(camera.fieldOfView * EIGEN_PI / 360.0) / 1.06;
-	const double   wide = half * std::max(1.0, aspectRatio), tall = half * std::max(1.0, 1.0 / aspectRatio);
-	double         distance = 0.0;
+	const double   half = std::tan(camera.fieldOfView * EIGEN_PI / 360.0) / 1.06;
+	const double   wide = half * std::max(1.0, aspectRatio),
+				 tall   = half * std::max(1.0, 1.0 / aspectRatio);
+	double distance     = 0.0;
 	for (Index i = 0; i < cloud.size(); ++i) {
 		const Vector3d d = cloud.positions.col(i) - camera.target;
 		distance         = std::max(
             {distance,
-			         d.dot(from) + std::abs(d.dot(right)) / wide,
-			         d.dot(from) + std::abs(d.dot(up)) / tall});
+		             d.dot(from) + std::abs(d.dot(right)) / wide,
+		             d.dot(from) + std::abs(d.dot(up)) / tall});
 	}
 	camera.position = camera.target + std::max(distance, 1e-9) * from;
 	return camera;
@@ -141,10 +146,12 @@ Ray rayThrough(const Camera& camera, const RayTracingOptions& image, double colu
 {
 	const Vector3d forward = (camera.target - camera.position).normalized();
 	const Vector3d right = forward.cross(camera.up).normalized(), up = right.cross(forward);
-	const double   pixel = 2.0 * std::tan(camera.fieldOfView * EIGEN_PI / 360.0) / std::min(image.width, image.height);
+	const double   pixel =
+		2.0 * std::tan(camera.fieldOfView * EIGEN_PI / 360.0) / std::min(image.width, image.height);
 	return {
 		camera.position,
-		(forward + pixel * (column - 0.5 * image.width) * right - pixel * (row - 0.5 * image.height) * up)
+		(forward + pixel * (column - 0.5 * image.width) * right -
+	     pixel * (row - 0.5 * image.height) * up)
 			.normalized()};
 }
 
@@ -155,8 +162,9 @@ struct RayTracer::Spheres {
 };
 
 RayTracer::RayTracer(
-	const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options) :
-		m_surface(surface), m_control(control), m_options(options)
+	const PointSetSurface&   surface,
+	const ControlPoints&     control,
+	const RayTracingOptions& options) : m_surface(surface), m_control(control), m_options(options)
 {
 	const Index n       = control.cloud.size();
 	auto        spheres = std::make_unique<Spheres>();
@@ -167,15 +175,16 @@ RayTracer::RayTracer(
 		const double   radius = (control.cloud.positions.col(near.back()) - center).norm();
 		spheres->all[i]       = {
             center,
-			control.cloud.normals.col(i),
-			std::clamp(radius, leastSphere * control.spacing[i], largestSphere * control.spacing[i])};
+            control.cloud.normals.col(i),
+            std::clamp(
+                radius, leastSphere * control.spacing[i], largestSphere * control.spacing[i])};
 	});
 	std::vector<Index>              indices(n);
 	std::vector<SphereTree::Volume> boxes(n);
 	for (Index i = 0; i < n; ++i) {
 		const auto& [center, normal, radius] = spheres->all[i];
-		indices[i] = i;
-		boxes[i]   = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
+		indices[i]                           = i;
+		boxes[i] = {center - Vector3d::Constant(radius), center + Vector3d::Constant(radius)};
 		spheres->box.extend(boxes[i]);
 	}
 	if (n > 0)
@@ -215,12 +224,15 @@ RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memor
 		// From the third quadric on, a secant step: where the surface bends more than they know, plain steps
 		// go to and fro.
 		const double change = lastStep - step;
-		lastMove = it > 1 && change * lastMove > 0.25 * lastMove * lastMove ? step * lastMove / change : step;
-		lastStep = step;
+		lastMove            = it > 1 && change * lastMove > 0.25 * lastMove * lastMove
+		                          ? step * lastMove / change
+		                          : step;
+		lastStep            = step;
 		t += lastMove;
 		place = ray.origin + t * ray.direction;
 		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
-		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius || !(t > 0.0))
+		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius ||
+		    !(t > 0.0))
 			return {};
 		if (it > 0 && found && std::abs(step) < m_options.tolerance * slot.around.spacing()) {
 			const Vector3d normal = quadric.normalAt(place);
@@ -235,13 +247,13 @@ RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memor
 }
 
 struct RayTracer::Elevation {
-	double   above = 0.0; // the surface at its foot
-	Vector3d normal = Vector3d::Zero();
+	double   above   = 0.0; // the surface at its foot
+	Vector3d normal  = Vector3d::Zero();
 	double   spacing = 0.0;
 };
 
-std::optional<RayTracer::Elevation> RayTracer::elevationOver(
-	Index point, const Vector3d& place, Memory& memory) const
+std::optional<RayTracer::Elevation>
+RayTracer::elevationOver(Index point, const Vector3d& place, Memory& memory) const
 {
 	const Memory::Slot& slot = surfaceAt(point, memory);
 	if (!slot.quadric)
@@ -251,28 +263,31 @@ std::optional<RayTracer::Elevation> RayTracer::elevationOver(
 		return std::nullopt;
 	const Vector3d normal = quadric.normalAt(place);
 	const double   above  = (place - quadric.foot(place)).dot(quadric.n);
-	return Elevation{std::max(above, slot.around.pastEdge(place, normal)), normal, slot.around.spacing()};
+	return Elevation{
+		std::max(above, slot.around.pastEdge(place, normal)), normal, slot.around.spacing()};
 }
 
 const RayTracer::Passage& RayTracer::closestTo(double t, const std::vector<Passage>& passages)
 {
-	return *std::min_element(passages.begin(), passages.end(), [t](const Passage& a, const Passage& b) {
-		return a.squaredDistance(t) < b.squaredDistance(t);
-	});
+	return *std::min_element(
+		passages.begin(), passages.end(), [t](const Passage& a, const Passage& b) {
+			return a.squaredDistance(t) < b.squaredDistance(t);
+		});
 }
 
 // Blended from the closest control points: of two neighbours, one may know of a sheet that the other does not.
 std::optional<RayTracer::Elevation> RayTracer::elevationAt(
 	const Ray& ray, double t, const std::vector<Passage>& passages, Memory& memory) const
 {
-	const Vector3d place = ray.origin + t * ray.direction;
+	const Vector3d place   = ray.origin + t * ray.direction;
 	const Passage& closest = closestTo(t, passages);
 	const auto     first   = elevationOver(closest.sphere, place, memory);
 	if (!first || std::abs(first->above) > far * first->spacing)
 		return first;
-	const double least = std::sqrt(closest.squaredDistance(t)), more = blend * m_control.spacing[closest.sphere];
-	Elevation    sum   = *first;
-	double       total = 1.0;
+	const double least = std::sqrt(closest.squaredDistance(t)),
+				 more  = blend * m_control.spacing[closest.sphere];
+	Elevation sum      = *first;
+	double    total    = 1.0;
 	for (const Passage& other : passages) {
 		const double square = other.squaredDistance(t);
 		if (&other == &closest || square >= (least + more) * (least + more))
@@ -306,7 +321,7 @@ RayHit RayTracer::bracketed(
 		const double tolerance = m_options.tolerance * found.spacing;
 		if (high - low < tolerance || (it > 0 && std::abs(found.above) < 0.1 * tolerance))
 			break;
-		t = (low * atHigh.above - high * atLow.above) / (atHigh.above - atLow.above);
+		t                = (low * atHigh.above - high * atLow.above) / (atHigh.above - atLow.above);
 		const auto there = elevationAt(ray, t, passages, memory);
 		if (!there)
 			break;
@@ -357,8 +372,8 @@ RayHit RayTracer::march(
 			}
 			last  = here;
 			lastT = t;
-			t += here ? std::max(shortest * here->spacing, 0.9 * std::abs(here->above)) :
-						shortest * m_spheres->all[passages.front().sphere].radius;
+			t += here ? std::max(shortest * here->spacing, 0.9 * std::abs(here->above))
+			          : shortest * m_spheres->all[passages.front().sphere].radius;
 		}
 	}
 	return {};
@@ -366,12 +381,13 @@ RayHit RayTracer::march(
 
 // At thin rims a ray may slip past the rounded front and meet the back, from inside: whether there is a front
 // about that the ray should have met.
-bool RayTracer::besideFront(const Ray& ray, double depth, const std::vector<Passage>& passages) const
+bool RayTracer::besideFront(
+	const Ray& ray, double depth, const std::vector<Passage>& passages) const
 {
 	return std::any_of(passages.begin(), passages.end(), [&](const Passage& passage) {
 		const Sphere& sphere = m_spheres->all[passage.sphere];
 		return sphere.normal.dot(ray.direction) < 0.0 &&
-			std::abs(passage.closest - depth) < behind * sphere.radius;
+		       std::abs(passage.closest - depth) < behind * sphere.radius;
 	});
 }
 
@@ -381,7 +397,7 @@ void RayTracer::aim(const Ray& axis, double spread, Memory& memory) const
 	if (m_spheres->all.empty())
 		return;
 	const Eigen::AlignedBox3d& box = m_spheres->box;
-	const double farthest = (axis.origin - box.center()).norm() + 0.5 * box.diagonal().norm();
+	const double    farthest = (axis.origin - box.center()).norm() + 0.5 * box.diagonal().norm();
 	SphereCollector collector{
 		m_spheres->all, axis, axis.direction.cwiseInverse(), spread * farthest, memory.m_spheres};
 	Eigen::BVIntersect(m_spheres->tree, collector);
@@ -394,24 +410,32 @@ RayHit RayTracer::trace(const Ray& ray) const
 	return trace(ray, memory);
 }
 
-void RayTracer::findPassages(const Ray& ray, const Memory& memory, std::vector<Passage>& passages) const
+void RayTracer::findPassages(
+	const Ray& ray, const Memory& memory, std::vector<Passage>& passages) const
 {
 	passages.clear();
 	for (const Index s : memory.m_spheres) {
 		const Sphere&  sphere  = m_spheres->all[s];
 		const Vector3d d       = sphere.center - ray.origin;
 		const double   closest = d.dot(ray.direction);
-		const double   whole = sphere.radius * sphere.radius, aside = d.squaredNorm() - closest * closest;
+		const double   whole   = sphere.radius * sphere.radius,
+					 aside     = d.squaredNorm() - closest * closest;
 		if (!(whole > aside))
 			continue;
 		const double half = std::sqrt(whole - aside);
 		if (!(closest + half > 0.0))
 			continue;
-		const double slope  = ray.direction.dot(sphere.normal);
-		const double start  = d.dot(sphere.normal) / slope, along = start - closest;
+		const double slope = ray.direction.dot(sphere.normal);
+		const double start = d.dot(sphere.normal) / slope, along = start - closest;
 		const bool   inside = std::abs(slope) > steepest && std::abs(along) < half;
 		passages.push_back(
-			{inside ? start : closest, closest, half, aside, aside + (inside ? along * along : whole), s, false});
+			{inside ? start : closest,
+		     closest,
+		     half,
+		     aside,
+		     aside + (inside ? along * along : whole),
+		     s,
+		     false});
 	}
 	std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
 		return a.start != b.start ? a.start < b.start : a.sphere < b.sphere;
@@ -420,10 +444,11 @@ void RayTracer::findPassages(const Ray& ray, const Memory& memory, std::vector<P
 
 RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 {
-	RayHit best;
+	RayHit                            best;
 	thread_local std::vector<Passage> passages;
 	findPassages(ray, memory, passages);
-	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth; ++first) {
+	for (std::size_t first = 0; first < passages.size() && passages[first].start < best.depth;
+	     ++first) {
 		if (passages[first].done)
 			continue;
 		// Of the spheres that expect the surface about here, the one whose point is closest to it.
@@ -441,7 +466,8 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 			if (!closest.encloses(hit.depth))
 				hit = {};
 		}
-		if (!hit.exists() || (hit.normal.dot(ray.direction) > 0.0 && besideFront(ray, hit.depth, passages))) {
+		if (!hit.exists() ||
+		    (hit.normal.dot(ray.direction) > 0.0 && besideFront(ray, hit.depth, passages))) {
 			const RayHit crossing = march(ray, best.depth, passages, memory);
 			return crossing.exists() ? crossing : best;
 		}
@@ -469,9 +495,10 @@ void aimAt(
 	double    spread = 0.0;
 	for (const double dx : {-0.5, 0.5})
 		for (const double dy : {-0.5, 0.5}) {
-			const Vector3d corner = rayThrough(camera, image, column + dx * size, row + dy * size).direction;
-			const double   along  = corner.dot(axis.direction);
-			spread                = std::max(spread, (corner / along - axis.direction).norm());
+			const Vector3d corner =
+				rayThrough(camera, image, column + dx * size, row + dy * size).direction;
+			const double along = corner.dot(axis.direction);
+			spread             = std::max(spread, (corner / along - axis.direction).norm());
 		}
 	tracer.aim(axis, spread, memory);
 }
@@ -483,12 +510,14 @@ std::vector<RayHit> traceImage(
 	const Progress&          progress)
 {
 	std::vector<RayHit> hits(std::size_t(options.width) * options.height);
-	const int columns = (options.width + tile - 1) / tile, rows = (options.height + tile - 1) / tile;
+	const int columns = (options.width + tile - 1) / tile,
+			  rows    = (options.height + tile - 1) / tile;
 	parallelFor(columns * rows, progress, [&](Index t) {
 		const int         left = tile * (t % columns), top = tile * (t / columns);
 		RayTracer::Memory memory;
 		for (int block = 0; block < (tile / beam) * (tile / beam); ++block) {
-			const int x0 = left + beam * (block % (tile / beam)), y0 = top + beam * (block / (tile / beam));
+			const int x0 = left + beam * (block % (tile / beam)),
+					  y0 = top + beam * (block / (tile / beam));
 			aimAt(tracer, camera, options, x0 + 0.5 * beam, y0 + 0.5 * beam, beam, memory);
 			for (int y = y0; y < std::min(y0 + beam, options.height); ++y)
 				for (int x = x0; x < std::min(x0 + beam, options.width); ++x)

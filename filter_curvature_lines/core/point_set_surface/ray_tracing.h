@@ -22,13 +22,15 @@ struct Camera {
 };
 
 struct RayTracingOptions {
-	int    width = 533, height = 400; // pixels
-	double tolerance     = 1e-2;      // in local spacings: the last step along the ray, many times the error left
-	int    maxIterations = 10;        // quadrics per sphere
+	int width = 533, height = 400; // pixels
+	// in local spacings: the last step along the ray, many times the error left
+	double tolerance     = 1e-2;
+	int    maxIterations = 10; // quadrics per sphere
 };
 
 struct RayHit {
-	double          depth = std::numeric_limits<double>::infinity(); // along the unit ray; infinite: none
+	// along the unit ray; infinite: none
+	double          depth    = std::numeric_limits<double>::infinity();
 	Eigen::Vector3d position = Eigen::Vector3d::Zero();
 	Eigen::Vector3d normal   = Eigen::Vector3d::Zero(); // unit, towards the outside of the surface
 
@@ -42,7 +44,10 @@ struct Ray {
 // Ready for any number of rays, from any number of threads.
 class RayTracer {
 public:
-	RayTracer(const PointSetSurface& surface, const ControlPoints& control, const RayTracingOptions& options);
+	RayTracer(
+		const PointSetSurface&   surface,
+		const ControlPoints&     control,
+		const RayTracingOptions& options);
 	~RayTracer();
 
 	// What rays next to each other share; changes no result. For one tracer and one thread.
@@ -59,7 +64,7 @@ public:
 
 	// Prepares for rays from one origin whose directions differ from that of the axis by `spread` (tangent) at
 	// most.
-	void   aim(const Ray& axis, double spread, Memory& memory) const;
+	void aim(const Ray& axis, double spread, Memory& memory) const;
 	RayHit trace(const Ray& ray, Memory& memory) const;
 	// Of a single ray.
 	RayHit trace(const Ray& ray) const;
@@ -70,11 +75,11 @@ private:
 	struct Elevation; // of a place over the surface
 
 	const Memory::Slot& surfaceAt(Index point, Memory& memory) const;
-	void   findPassages(const Ray& ray, const Memory& memory, std::vector<Passage>& passages) const;
+	void findPassages(const Ray& ray, const Memory& memory, std::vector<Passage>& passages) const;
 	// The fixed-point loop along a ray, and the march.
 	RayHit approach(const Ray& ray, const Passage& passage, Memory& memory) const;
-	RayHit march(
-		const Ray& ray, double end, const std::vector<Passage>& passages, Memory& memory) const;
+	RayHit
+	march(const Ray& ray, double end, const std::vector<Passage>& passages, Memory& memory) const;
 	RayHit bracketed(
 		const Ray&                  ray,
 		double                      low,
@@ -86,7 +91,8 @@ private:
 	std::optional<Elevation> elevationAt(
 		const Ray& ray, double t, const std::vector<Passage>& passages, Memory& memory) const;
 	// As the neighbours of one control point know it.
-	std::optional<Elevation> elevationOver(Index point, const Eigen::Vector3d& place, Memory& memory) const;
+	std::optional<Elevation>
+	elevationOver(Index point, const Eigen::Vector3d& place, Memory& memory) const;
 	static const Passage& closestTo(double t, const std::vector<Passage>& passages);
 	bool besideFront(const Ray& ray, double depth, const std::vector<Passage>& passages) const;
 

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 constexpr Index  colorNeighbors = 8;
 constexpr double ambient        = 0.3;
 constexpr double glossShare = 0.12, glossPower = 40.0;
-constexpr double outlineTurn = 0.8; // cosine between normals of neighbouring pixels
-constexpr double outlineJump = 4.0; // spacings of depth, where the surface faces the eye
+constexpr double outlineTurn  = 0.8; // cosine between normals of neighbouring pixels
+constexpr double outlineJump  = 4.0; // spacings of depth, where the surface faces the eye
 constexpr double aboveSurface = 1.5; // spacings: lines so far behind are still drawn
 
 class Shader {
@@ -37,22 +37,28 @@ public:
 	{
 		const Vector3d toEye  = (m_eye - hit.position).normalized();
 		const Vector3d normal = hit.normal.dot(toEye) < 0.0 ? Vector3d(-hit.normal) : hit.normal;
-		const double   light  = std::max(0.0, normal.dot(m_light)), front = std::max(0.0, normal.dot(toEye));
-		const double   diffuse = ambient + (1.0 - ambient) * (0.75 * light + 0.25 * front);
-		const double   gloss = glossShare * std::pow(std::max(0.0, normal.dot((toEye + m_light).normalized())), glossPower);
+		const double   light  = std::max(0.0, normal.dot(m_light)),
+					 front    = std::max(0.0, normal.dot(toEye));
+		const double diffuse  = ambient + (1.0 - ambient) * (0.75 * light + 0.25 * front);
+		const double gloss =
+			glossShare *
+			std::pow(std::max(0.0, normal.dot((toEye + m_light).normalized())), glossPower);
 		return (diffuse * colorAt(hit.position)).array() + gloss;
 	}
 
 private:
 	Vector3d colorAt(const Vector3d& position) const
 	{
-		const auto near  = m_control.search.nearest(position, colorNeighbors);
+		const auto   near  = m_control.search.nearest(position, colorNeighbors);
 		const double reach = (m_control.cloud.positions.col(near.back()) - position).squaredNorm();
-		Vector3d   sum   = Vector3d::Zero();
-		double     total = 0.0;
+		Vector3d     sum   = Vector3d::Zero();
+		double       total = 0.0;
 		for (const Index j : near) {
 			const double w =
-				1e-6 + std::max(0.0, 1.0 - (m_control.cloud.positions.col(j) - position).squaredNorm() / (reach + 1e-300));
+				1e-6 + std::max(
+						   0.0,
+						   1.0 - (m_control.cloud.positions.col(j) - position).squaredNorm() /
+									 (reach + 1e-300));
 			sum += w * m_colors.col(j);
 			total += w;
 		}
@@ -68,7 +74,8 @@ bool isOutline(const RayHit& a, const RayHit& b, double jump)
 {
 	if (a.exists() != b.exists())
 		return true;
-	return a.exists() && (std::abs(a.depth - b.depth) > jump || a.normal.dot(b.normal) < outlineTurn);
+	return a.exists() &&
+	       (std::abs(a.depth - b.depth) > jump || a.normal.dot(b.normal) < outlineTurn);
 }
 
 // Distance in pixels of a pixel's middle from the projected segment, and the depth there.
@@ -96,21 +103,22 @@ void drawLines(
 	const int      width = options.image.width, height = options.image.height;
 	const Vector3d forward = (camera.target - camera.position).normalized();
 	const Vector3d right = forward.cross(camera.up).normalized(), up = right.cross(forward);
-	const double   scale = 0.5 * std::min(width, height) / std::tan(camera.fieldOfView * EIGEN_PI / 360.0);
-	const double   half  = 0.5 * options.lineWidth;
+	const double   scale =
+		0.5 * std::min(width, height) / std::tan(camera.fieldOfView * EIGEN_PI / 360.0);
+	const double       half = 0.5 * options.lineWidth;
 	std::vector<float> covered(hits.size(), 0.0f);
 	Eigen::Matrix3Xd   color = Eigen::Matrix3Xd::Zero(3, pixels.cols());
 	const auto         place = [&](Index v, Eigen::Vector2d& at, double& depth) {
-		const Vector3d d = lines.vertices.col(v) - camera.position;
-		const double   z = d.dot(forward);
-		at    = {0.5 * width + scale * d.dot(right) / z, 0.5 * height - scale * d.dot(up) / z};
-		depth = d.norm();
-		return z > 0.0;
+        const Vector3d d = lines.vertices.col(v) - camera.position;
+        const double   z = d.dot(forward);
+        at = {0.5 * width + scale * d.dot(right) / z, 0.5 * height - scale * d.dot(up) / z};
+        depth = d.norm();
+        return z > 0.0;
 	};
 	for (std::size_t s = 0; s < lines.segments.size(); ++s) {
 		ScreenSegment segment;
 		if (!place(lines.segments[s].first, segment.from, segment.fromDepth) ||
-			!place(lines.segments[s].second, segment.to, segment.toDepth))
+		    !place(lines.segments[s].second, segment.to, segment.toDepth))
 			continue;
 		const auto low  = segment.from.cwiseMin(segment.to).array() - half - 1.0;
 		const auto high = segment.from.cwiseMax(segment.to).array() + half + 1.0;
@@ -118,11 +126,11 @@ void drawLines(
 			continue;
 		for (int y = std::max(0, int(low.y())); y <= std::min(height - 1.0, high.y()); ++y)
 			for (int x = std::max(0, int(low.x())); x <= std::min(width - 1.0, high.x()); ++x) {
-				const std::size_t p = std::size_t(y) * width + x;
+				const std::size_t p          = std::size_t(y) * width + x;
 				const auto [distance, depth] = segment.nearest({x + 0.5, y + 0.5});
-				const auto coverage = float(std::clamp(half + 0.5 - distance, 0.0, 1.0));
+				const auto coverage          = float(std::clamp(half + 0.5 - distance, 0.0, 1.0));
 				if (coverage <= covered[p] || !hits[p].exists() ||
-					depth > hits[p].depth + aboveSurface * spacing)
+				    depth > hits[p].depth + aboveSurface * spacing)
 					continue;
 				covered[p]   = coverage;
 				color.col(p) = lines.colors.col(s);
@@ -145,26 +153,27 @@ Picture renderPicture(
 	const Progress&         progress)
 {
 	const int  width = options.image.width, height = options.image.height;
-	const auto hits = traceImage(tracer, camera, options.image, progress.sub(0.0, 0.8, "Tracing rays"));
+	const auto hits =
+		traceImage(tracer, camera, options.image, progress.sub(0.0, 0.8, "Tracing rays"));
 	std::vector<double> spacings = control.spacing;
 	const double        spacing  = spacings.empty() ? 0.0 : medianInPlace(spacings);
 
 	const Shader     shade(control, colors, camera);
 	Eigen::Matrix3Xd pixels(3, hits.size());
 	const auto       colorOf = [&](const RayHit& hit) {
-		return hit.exists() ? shade(hit) : options.background;
+        return hit.exists() ? shade(hit) : options.background;
 	};
 	parallelFor(height, progress.sub(0.8, 1.0, "Shading"), [&](Index y) {
 		RayTracer::Memory memory;
 		for (int x = 0; x < width; ++x) {
-			const std::size_t p = std::size_t(y) * width + x;
-			bool outline = false;
+			const std::size_t p       = std::size_t(y) * width + x;
+			bool              outline = false;
 			if (options.smoothOutlines) {
 				const double jump = outlineJump * spacing;
-				outline = (x > 0 && isOutline(hits[p], hits[p - 1], jump)) ||
-					(x + 1 < width && isOutline(hits[p], hits[p + 1], jump)) ||
-					(y > 0 && isOutline(hits[p], hits[p - width], jump)) ||
-					(y + 1 < height && isOutline(hits[p], hits[p + width], jump));
+				outline           = (x > 0 && isOutline(hits[p], hits[p - 1], jump)) ||
+				          (x + 1 < width && isOutline(hits[p], hits[p + 1], jump)) ||
+				          (y > 0 && isOutline(hits[p], hits[p - width], jump)) ||
+				          (y + 1 < height && isOutline(hits[p], hits[p + width], jump));
 			}
 			if (!outline) {
 				pixels.col(p) = colorOf(hits[p]);
@@ -174,7 +183,8 @@ Picture renderPicture(
 			aimAt(tracer, camera, options.image, x + 0.5, y + 0.5, 1.0, memory);
 			for (const double dx : {0.25, 0.75})
 				for (const double dy : {0.25, 0.75})
-					sum += colorOf(tracer.trace(rayThrough(camera, options.image, x + dx, y + dy), memory));
+					sum += colorOf(
+						tracer.trace(rayThrough(camera, options.image, x + dx, y + dy), memory));
 			pixels.col(p) = 0.25 * sum;
 		}
 	});
@@ -184,7 +194,8 @@ Picture renderPicture(
 	for (std::size_t p = 0; p < hits.size(); ++p) {
 		picture.hits += hits[p].exists();
 		for (int c = 0; c < 3; ++c)
-			picture.rgb[3 * p + c] = std::uint8_t(std::lround(255.0 * std::clamp(pixels(c, p), 0.0, 1.0)));
+			picture.rgb[3 * p + c] =
+				std::uint8_t(std::lround(255.0 * std::clamp(pixels(c, p), 0.0, 1.0)));
 	}
 	return picture;
 }

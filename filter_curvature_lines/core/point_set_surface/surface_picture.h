@@ -9,8 +9,9 @@ namespace curvature_lines {
 struct PictureOptions {
 	RayTracingOptions image;
 	Eigen::Vector3d   background = {1.0, 1.0, 1.0}; // 0..1
-	bool              smoothOutlines = true;        // four rays more where neighbouring pixels differ
-	double            lineWidth      = 1.4;         // pixels
+	// four rays more where neighbouring pixels differ
+	bool   smoothOutlines = true;
+	double lineWidth      = 1.4; // pixels
 };
 
 // Lines on the surface, each with one colour (0..1).
@@ -22,7 +23,7 @@ struct PictureLines {
 
 struct Picture {
 	int                       width = 0, height = 0;
-	std::vector<std::uint8_t> rgb;  // 3 bytes per pixel, row by row from the top
+	std::vector<std::uint8_t> rgb;      // 3 bytes per pixel, row by row from the top
 	Index                     hits = 0; // pixels that show the surface
 };
 

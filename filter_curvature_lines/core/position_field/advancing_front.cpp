@@ -74,7 +74,8 @@ struct SheetPriority {
 			hash += hashOf(p->point().x(), p->point().y(), p->point().z());
 		}
 		const double share = double(hash >> 11) * 0x1p-53;
-		return later * front.smallest_radius_delaunay_sphere(cell, facet) * (1.0 + triangleTieBreak * share);
+		return later * front.smallest_radius_delaunay_sphere(cell, facet) *
+		       (1.0 + triangleTieBreak * share);
 	}
 };
 
@@ -83,14 +84,16 @@ Kernel::Point_3 withoutTies(const Eigen::Vector3d& p, double longestEdge)
 	const double     most = pointTieBreak * longestEdge;
 	std::minstd_rand random(static_cast<std::uint32_t>(hashOf(p.x(), p.y(), p.z()) >> 32));
 	std::uniform_real_distribution<double> shift(-most, most);
-	const double x = shift(random), y = shift(random), z = shift(random);
+	const double                           x = shift(random), y = shift(random), z = shift(random);
 	return {p.x() + x, p.y() + y, p.z() + z};
 }
 
 } // namespace
 
 std::vector<Triangle> advancingFront(
-	const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals, const Eigen::VectorXd& longestEdge)
+	const Eigen::Matrix3Xd& points,
+	const Eigen::Matrix3Xd& normals,
+	const Eigen::VectorXd&  longestEdge)
 {
 	std::vector<Triangle> triangles;
 	if (points.cols() < 4)

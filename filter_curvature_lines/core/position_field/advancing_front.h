@@ -10,6 +10,8 @@ namespace curvature_lines {
 // vertices; oriented alike where they hang together, to either side. Points whose `normals` (3 x N, unit, or
 // zero where there is none) oppose each other are of two sheets, and joined only where nothing else is left.
 std::vector<Triangle> advancingFront(
-	const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals, const Eigen::VectorXd& longestEdge);
+	const Eigen::Matrix3Xd& points,
+	const Eigen::Matrix3Xd& normals,
+	const Eigen::VectorXd&  longestEdge);
 
 } // namespace curvature_lines

@@ -29,16 +29,18 @@ double distanceTo(const Vector3d& p, const Vector3d& a, const Vector3d& b, const
 		const double   t = std::clamp((p - from).dot(d) / (d.squaredNorm() + 1e-300), 0.0, 1.0);
 		return (p - from - t * d).norm();
 	};
-	const Vector3d n      = (b - a).cross(c - a);
-	const bool     inside = (b - a).cross(p - a).dot(n) >= 0.0 && (c - b).cross(p - b).dot(n) >= 0.0 &&
-						(a - c).cross(p - c).dot(n) >= 0.0;
+	const Vector3d n  = (b - a).cross(c - a);
+	const bool inside = (b - a).cross(p - a).dot(n) >= 0.0 && (c - b).cross(p - b).dot(n) >= 0.0 &&
+	                    (a - c).cross(p - c).dot(n) >= 0.0;
 	if (inside && n.norm() > 0.0)
 		return std::abs((p - a).dot(n.normalized()));
 	return std::min({toSegment(a, b), toSegment(b, c), toSegment(c, a)});
 }
 
 void insertMissing(
-	const Eigen::Matrix3Xd& points, const std::vector<Pair>& wanted, std::vector<Triangle>& triangles)
+	const Eigen::Matrix3Xd&  points,
+	const std::vector<Pair>& wanted,
+	std::vector<Triangle>&   triangles)
 {
 	std::vector<char> used(points.cols(), 0);
 	for (const Triangle& t : triangles)
@@ -95,9 +97,11 @@ bool joinByFlips(
 			for (int c = 0; c < 3; ++c) {
 				if (triangles[t][c] != a)
 					continue;
-				const Vector3d middle =
-					0.5 * (points.col(triangles[t][(c + 1) % 3]) + points.col(triangles[t][(c + 2) % 3]));
-				const double cosine = (middle - points.col(a)).normalized().dot((points.col(b) - points.col(a)).normalized());
+				const Vector3d middle = 0.5 * (points.col(triangles[t][(c + 1) % 3]) +
+				                               points.col(triangles[t][(c + 2) % 3]));
+				const double   cosine = (middle - points.col(a))
+				                          .normalized()
+				                          .dot((points.col(b) - points.col(a)).normalized());
 				if (cosine > best) {
 					best    = cosine;
 					towards = mesh.edgeOf(t, (c + 1) % 3);
@@ -141,7 +145,8 @@ void recoverCreaseEdges(
 		if (mesh.edgeBetween(a, b) >= 0)
 			continue;
 		std::vector<Triangle> flipped = triangles;
-		if (joinByFlips(points, a, b, edges, flipped) || joinByFlips(points, b, a, edges, flipped = triangles))
+		if (joinByFlips(points, a, b, edges, flipped) ||
+		    joinByFlips(points, b, a, edges, flipped = triangles))
 			triangles = std::move(flipped);
 	}
 }

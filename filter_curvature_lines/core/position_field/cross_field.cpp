@@ -28,8 +28,8 @@ constexpr double mostTrust  = 10.0;
 constexpr double fewestCells = 1.0;
 // What errors leave out, such as corners nearby: a difference no estimate tells from flat, over the diagonal.
 constexpr double leastError = 0.02;
-constexpr double leastRatio =
-	0.05; // |k1 - k2| over the RMS curvature, below which a point is umbilic
+// |k1 - k2| over the RMS curvature, below which a point is umbilic
+constexpr double leastRatio      = 0.05;
 constexpr double regularization  = 1e-9;
 constexpr double eigenShift      = 1e-8;
 constexpr int    eigenIterations = 40;
@@ -176,7 +176,7 @@ std::array<int, 3> cornerTurns(const TriangleMesh& mesh, const CrossField& field
 Index CrossField::singularTriangles() const
 {
 	return static_cast<Index>(index.size()) -
-		   static_cast<Index>(std::count(index.begin(), index.end(), std::uint8_t(0)));
+	       static_cast<Index>(std::count(index.begin(), index.end(), std::uint8_t(0)));
 }
 
 DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& curvature)
@@ -201,7 +201,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 		const double size       = curvedness(curvature.k1[i], curvature.k2[i]);
 		const double sure       = difference / (curvature.error[i] + leastError);
 		if (curvature.status[i] == PointStatus::TooFewNeighbors || difference < leastRatio * size ||
-			sure < sureErrors)
+		    sure < sureErrors)
 			continue;
 		const double ratio      = difference / size;
 		const double confidence = std::min(mostTrust, sure / cellErrors);
@@ -239,7 +239,7 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 	Eigen::VectorXd          known     = Eigen::VectorXd::Zero(n); // cells, per component
 	for (Index v = 0; v < n; ++v)
 		known[component[v]] += guide.weights[v];
-	const auto guided = [&](Index v) { return known[component[v]] >= fewestCells; };
+	const auto       guided    = [&](Index v) { return known[component[v]] >= fewestCells; };
 	Eigen::VectorXcd z         = Eigen::VectorXcd::Zero(n);
 	bool             anyGuided = false, allGuided = true;
 	for (Index v = 0; v < n; ++v) {
@@ -270,7 +270,7 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 		int sum = 0;
 		for (int c = 0; c < 3; ++c)
 			sum += mesh.isForward(t, c) ? field.turns[mesh.edgeOf(t, c)]
-										: -field.turns[mesh.edgeOf(t, c)];
+			                            : -field.turns[mesh.edgeOf(t, c)];
 		field.index[t] = static_cast<std::uint8_t>(sum & 3);
 	}
 	return field;

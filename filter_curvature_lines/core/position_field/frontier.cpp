@@ -117,7 +117,7 @@ struct Likelihood {
 		Vector3d sum = Vector3d::Zero();
 		for (Index i = 0; i < x.size(); ++i)
 			sum += PointTerm((basis.col(i).dot(c) - x[i]) / blur).third / (blur * blur * blur) *
-				   basis.col(i).dot(covariance * basis.col(i)) * basis.col(i);
+			       basis.col(i).dot(covariance * basis.col(i)) * basis.col(i);
 		return 0.5 * covariance * sum;
 	}
 };

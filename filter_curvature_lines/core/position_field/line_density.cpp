@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using SparseReal = Eigen::SparseMatrix<double>;
 
-constexpr double curvatureFloor =
-	0.1; // of the RMS curvature: flat parts have no preferred direction
+// of the RMS curvature: flat parts have no preferred direction
+constexpr double curvatureFloor = 0.1;
 constexpr double stiffness      = 1e-3; // of the log density; keeps its solve well-posed
 const double     mostCorrection = std::log(2.0);
 constexpr double creaseShare    = 1e-3; // weight of a crease corner in the mean of a triangle
@@ -114,7 +114,7 @@ countsOf(const TriangleMesh& mesh, const CrossField& field, const LineDensity& d
 		const Vector3d along = mesh.along(e);
 		for (const Index v : {edge.from, edge.to})
 			onRims += 0.5 * (density(0, v) * std::abs(along.dot(field.d1.col(v))) +
-							 density(1, v) * std::abs(along.dot(field.d2.col(v))));
+			                 density(1, v) * std::abs(along.dot(field.d2.col(v))));
 	}
 	return {inside, onRims};
 }
@@ -140,8 +140,8 @@ TriangleField triangleField(
 		const Index                   v      = t[c];
 		const Vector3d                normal = field.normals.col(v);
 		const std::array<Vector3d, 2> arms   = {
-			  transported(field.d1.col(v), normal, result.normal) * density(0, v),
-			  transported(field.d2.col(v), normal, result.normal) * density(1, v)};
+            transported(field.d1.col(v), normal, result.normal) * density(0, v),
+            transported(field.d2.col(v), normal, result.normal) * density(1, v)};
 		const double weight = field.onCrease[v] ? creaseShare : 1.0;
 		for (int f = 0; f < 2; ++f) {
 			const FamilyImage image = familyBehind(result.turns[c], f);
@@ -169,7 +169,7 @@ expectedRise(const TriangleMesh& mesh, const CrossField& field, const LineDensit
 		const bool     skipEnd   = field.onCrease[edge.to] && !field.onCrease[edge.from];
 		const double   share     = skipStart ? 0.0 : skipEnd ? 1.0 : 0.5;
 		rise[e]                  = share * at(edge.from, step) +
-				  (1.0 - share) * turned(at(edge.to, step), -int(field.turns[e]));
+		          (1.0 - share) * turned(at(edge.to, step), -int(field.turns[e]));
 	}
 	return rise;
 }

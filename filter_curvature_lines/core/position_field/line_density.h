@@ -11,9 +11,9 @@ namespace curvature_lines {
 
 struct LineDensityOptions {
 	double targetVertices = 1600.0;
-	double anisotropy =
-		1.5;               // largest ratio of the spacings of both families that curvature asks for
-	double evenness = 3.0; // how much uneven spacing costs against lines that end
+	// largest ratio of the spacings of both families that curvature asks for
+	double anisotropy = 1.5;
+	double evenness   = 3.0; // how much uneven spacing costs against lines that end
 };
 
 // Row f: lines of family f per length, met when walking along d1 (f = 0) or d2 (f = 1).

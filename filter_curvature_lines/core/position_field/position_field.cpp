@@ -25,8 +25,8 @@ constexpr int    eigenIterations = 30;
 constexpr double pinWeight       = 100.0; // over the largest diagonal, in the start
 constexpr double hardPinWeight   = 1e4;   // and in the fit
 constexpr double gauge           = 1e-8;
-constexpr double unreliable =
-	1e-6; // weight of triangles where a line ends or the field is singular
+// weight of triangles where a line ends or the field is singular
+constexpr double unreliable = 1e-6;
 
 Complex rounded(const Complex& z)
 {

@@ -19,10 +19,10 @@ struct PhasePins {
 };
 
 struct PositionFieldOptions {
-	double startDrift =
-		10.0; // cost of drifting along a line over that of uneven spacing: in the start
-	double fitDrift = 100.0; // and in the fit
-	int    rounds   = 2;     // of the fit, jumps found anew in each
+	// cost of drifting along a line over that of uneven spacing: in the start
+	double startDrift = 10.0;
+	double fitDrift   = 100.0; // and in the fit
+	int    rounds     = 2;     // of the fit, jumps found anew in each
 };
 
 struct PositionField {

@@ -63,8 +63,8 @@ int familyOf(
 	const Index t = chord.triangle;
 	if (field.index[t] & 1) // one family goes on as the other
 		return 0;
-	const std::array<int, 3> turns = cornerTurns(mesh, field, t);
-	double                   first = 0.0; // how much arm d1 of corner 0 is of family 1
+	const std::array<int, 3> turns  = cornerTurns(mesh, field, t);
+	double                   first  = 0.0; // how much arm d1 of corner 0 is of family 1
 	int                      family = curves.points[chord.a.edge][chord.a.point].family;
 	for (int c = 0; c < 3; ++c) {
 		const Index v = mesh.triangles()[t][c];
@@ -82,8 +82,9 @@ struct Link {
 };
 struct Chain {
 	std::vector<Index> nodes;
-	std::vector<int>   family; // of the links between nodes, and of a closed chain from its last node to its first
-	bool               closed = false;
+	// of the links between nodes, and of a closed chain from its last node to its first
+	std::vector<int> family;
+	bool             closed = false;
 };
 
 std::vector<Chain> chainsOf(const std::vector<std::vector<Link>>& joined)
@@ -91,22 +92,22 @@ std::vector<Chain> chainsOf(const std::vector<std::vector<Link>>& joined)
 	std::vector<Chain> chains;
 	std::vector<char>  visited(joined.size(), 0);
 	const auto         follow = [&](Index start, bool closed) {
-		Chain chain;
-		chain.closed = closed;
-		for (Index at = start; at >= 0;) {
-			visited[at] = 1;
-			chain.nodes.push_back(at);
-			Index next = -1;
-			for (const Link& link : joined[at])
-				if (!visited[link.to] && next < 0) {
-					next = link.to;
-					chain.family.push_back(link.family);
-				}
-			at = next;
-		}
-		if (closed) // the first link was taken from the front
-			chain.family.push_back(joined[start].back().family);
-		chains.push_back(std::move(chain));
+        Chain chain;
+        chain.closed = closed;
+        for (Index at = start; at >= 0;) {
+            visited[at] = 1;
+            chain.nodes.push_back(at);
+            Index next = -1;
+            for (const Link& link : joined[at])
+                if (!visited[link.to] && next < 0) {
+                    next = link.to;
+                    chain.family.push_back(link.family);
+                }
+            at = next;
+        }
+        if (closed) // the first link was taken from the front
+            chain.family.push_back(joined[start].back().family);
+        chains.push_back(std::move(chain));
 	};
 	const auto count = static_cast<Index>(joined.size());
 	for (const std::size_t degree : {1, 2})
@@ -129,7 +130,8 @@ void completeFamilies(std::vector<int>& family)
 std::vector<Chain> cut(Chain chain)
 {
 	completeFamilies(chain.family);
-	const auto change = std::adjacent_find(chain.family.begin(), chain.family.end(), std::not_equal_to<int>());
+	const auto change =
+		std::adjacent_find(chain.family.begin(), chain.family.end(), std::not_equal_to<int>());
 	if (change == chain.family.end())
 		return {std::move(chain)};
 	if (chain.closed) {
@@ -187,8 +189,9 @@ LineNetwork linesOf(
 	const Eigen::VectorXd          arms = familyOfArms(scaffold, field, curvature);
 	std::vector<std::vector<Link>> joined(first.back());
 	for (const SurfaceCurves::Chord& chord : curves.chords) {
-		const Index a = first[chord.a.edge] + chord.a.point, b = first[chord.b.edge] + chord.b.point;
-		const int   family = familyOf(chord, curves, mesh, field, arms);
+		const Index a    = first[chord.a.edge] + chord.a.point,
+					b    = first[chord.b.edge] + chord.b.point;
+		const int family = familyOf(chord, curves, mesh, field, arms);
 		joined[a].push_back({b, family});
 		joined[b].push_back({a, family});
 	}
@@ -198,11 +201,16 @@ LineNetwork linesOf(
 	parallelFor(mesh.edgeCount(), {}, [&](Index e) {
 		const Vector3d side = sideOf(mesh, e);
 		for (std::size_t p = 0; p < curves.points[e].size(); ++p) {
-			const Vector3d at = mesh.vertices.col(mesh.edges()[e].from) + curves.points[e][p].t * mesh.along(e);
+			const Vector3d at =
+				mesh.vertices.col(mesh.edges()[e].from) + curves.points[e][p].t * mesh.along(e);
 			SurfaceSample& sample = samples[first[e] + p];
 			edgeOf[first[e] + p]  = e;
-			sample = projectToSurface(
-				cloud, curvature, at, closestOnSide(cloud, search, at, side), ProjectionKind::Mixed);
+			sample                = projectToSurface(
+                cloud,
+                curvature,
+                at,
+                closestOnSide(cloud, search, at, side),
+                ProjectionKind::Mixed);
 			if (mesh.edges()[e].isRim() || scaffold.creaseEdge[e])
 				sample.position = at; // as the mesh has it
 		}
@@ -213,7 +221,8 @@ LineNetwork linesOf(
 			return LineEnd::Rim;
 		if (scaffold.creaseEdge[edgeOf[node]])
 			return LineEnd::Crease;
-		return field.index[edge.left] != 0 || field.index[edge.right] != 0 ? LineEnd::Umbilic : LineEnd::Line;
+		return field.index[edge.left] != 0 || field.index[edge.right] != 0 ? LineEnd::Umbilic
+		                                                                   : LineEnd::Line;
 	};
 
 	std::vector<Chain> chains;

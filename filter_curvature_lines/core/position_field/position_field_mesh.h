@@ -21,11 +21,11 @@ struct PositionFieldMeshOptions {
 };
 
 struct PositionFieldMeshResult : QuadMeshResult {
-	Index scaffoldVertices = 0, scaffoldEuler = 0;
-	Index singularTriangles = 0, lineEnds = 0;
-	Index droppedComponents  = 0; // too small for a mesh, or without any line
-	Index repairedComponents = 0;
-	Index filledHoles = 0, lostCreaseEdges = 0;
+	Index       scaffoldVertices = 0, scaffoldEuler = 0;
+	Index       singularTriangles = 0, lineEnds = 0;
+	Index       droppedComponents  = 0; // too small for a mesh, or without any line
+	Index       repairedComponents = 0;
+	Index       filledHoles = 0, lostCreaseEdges = 0;
 	LineNetwork lines; // if keepLines
 };
 

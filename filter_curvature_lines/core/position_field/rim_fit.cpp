@@ -18,19 +18,20 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr Index  longestReach  = 90; // of the part of a rim that tells where it lies, to either side
-constexpr Index  shortestReach = 12;
-constexpr double mostWinding   = 1.0; // of that part about a circle, RMS
-constexpr double sameCourse    = -0.5; // cosine of its turn
-constexpr Index  chordReach    = 4; // of chords whose turn it is
-constexpr Index  sideReach     = 6; // of the direction in which a side meets a corner
-constexpr Index  aroundCorner  = 5; // beside so many vertices lie points of the other side
-constexpr double sameSheet     = 0.5; // cosine of normals
-constexpr double depth         = 4.0; // points so near are looked at; these in vertex spacings
-constexpr double bandDepth     = 3.0; // the density is that of the points from a gap to this
-constexpr double mostGap       = 2.0;
-constexpr double leastBand     = 0.5; // its length over the rim's
-constexpr double mostOffset    = 1.5;
+// of the part of a rim that tells where it lies, to either side
+constexpr Index  longestReach     = 90;
+constexpr Index  shortestReach    = 12;
+constexpr double mostWinding      = 1.0;  // of that part about a circle, RMS
+constexpr double sameCourse       = -0.5; // cosine of its turn
+constexpr Index  chordReach       = 4;    // of chords whose turn it is
+constexpr Index  sideReach        = 6;    // of the direction in which a side meets a corner
+constexpr Index  aroundCorner     = 5;    // beside so many vertices lie points of the other side
+constexpr double sameSheet        = 0.5;  // cosine of normals
+constexpr double depth            = 4.0;  // points so near are looked at; these in vertex spacings
+constexpr double bandDepth        = 3.0;  // the density is that of the points from a gap to this
+constexpr double mostGap          = 2.0;
+constexpr double leastBand        = 0.5; // its length over the rim's
+constexpr double mostOffset       = 1.5;
 constexpr double mostCornerOffset = 4.0;
 constexpr double straight         = 0.9; // cosine of the turn of a corner that is none
 constexpr int    fitSteps         = 3;   // each sees sides and corners where the last put them
@@ -121,7 +122,7 @@ Circle circleAlong(const std::vector<Vector2d>& points)
 struct Strip {
 	std::vector<Vector2d> rim, points;
 	Vector2d              begin = Vector2d::Zero(), end = Vector2d::Zero(); // of the rim
-	double                density = 0.0; // of points
+	double                density = 0.0;                                    // of points
 };
 
 // The rims of a scaffold with the cloud beside them.
@@ -133,9 +134,8 @@ public:
 		const Eigen::Matrix3Xd& normals,
 		double                  noise,
 		Scaffold&               scaffold) :
-			m_rims(rims),
-			m_cloud(cloud), m_normals(normals), m_noise(noise), m_spacing(scaffold.spacing),
-			m_positions(scaffold.mesh.vertices)
+			m_rims(rims), m_cloud(cloud), m_normals(normals), m_noise(noise),
+			m_spacing(scaffold.spacing), m_positions(scaffold.mesh.vertices)
 	{
 		for (Index r = 0; r < static_cast<Index>(rims.size()); ++r)
 			for (Index k = 0; k < rims[r].size(); ++k)
@@ -187,7 +187,7 @@ private:
 		parallelFor(m_cloud.size(), {}, [&](Index j) {
 			const Index i = search.nearest(m_cloud.positions.col(j), 1)[0];
 			if ((m_cloud.positions.col(j) - rimPositions.col(i)).norm() < depth * m_spacing &&
-				m_cloud.normals.col(j).dot(m_normals.col(vertexAt(i))) > sameSheet)
+			    m_cloud.normals.col(j).dot(m_normals.col(vertexAt(i))) > sameSheet)
 				owner[j] = vertexAt(i);
 		});
 		m_beside.assign(m_positions.cols(), {});
@@ -280,9 +280,8 @@ private:
 			circle = circleAlong(strip.rim);
 		}
 		// The band lies deeper than the rim, and where this bends around it is shorter.
-		const double middle = 0.5 * (gap() + bandDepth * m_spacing);
-		const double density =
-			strip.density / std::max(leastBand, 1.0 + circle.curvature * middle);
+		const double middle  = 0.5 * (gap() + bandDepth * m_spacing);
+		const double density = strip.density / std::max(leastBand, 1.0 + circle.curvature * middle);
 		if (!(density > 0.0) || !std::isfinite(density))
 			return {};
 		view.turn(circle.slope);

@@ -12,7 +12,7 @@ struct Rim {
 
 	Index size() const { return static_cast<Index>(vertices.size()); }
 	Index at(Index k) const { return vertices[(k % size() + size()) % size()]; }
-	bool  isCorner(Index k) const { return corner[(k % size() + size()) % size()] != 0; }
+	bool isCorner(Index k) const { return corner[(k % size() + size()) % size()] != 0; }
 	// Along the rim at its k-th vertex, from neighbours on the same side of corners; unit.
 	Eigen::Vector3d tangent(Index k, const Eigen::Matrix3Xd& positions) const;
 };

@@ -23,10 +23,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  spacingProbes    = 2000;
-constexpr Index  spacingNeighbors = 6;
-constexpr double poissonSpacing =
-	0.977; // mean distance to six neighbours of random points, density 1
+constexpr Index spacingProbes    = 2000;
+constexpr Index spacingNeighbors = 6;
+// mean distance to six neighbours of random points, density 1
+constexpr double poissonSpacing   = 0.977;
 constexpr double evenSites        = 1.5; // mean distance to six neighbours, thinned to distance 1
 constexpr double trianglesPerFace = 3.0; // thinning distances in an edge of the quad mesh
 // Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
@@ -35,9 +35,9 @@ constexpr double creaseStep     = 0.93;
 constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
 constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
 constexpr int    attempts       = 3;
-constexpr int    otherTries    = 4;
-constexpr double otherDistance = 0.05; // thinning of each, over that of the one before
-constexpr double shortCrease   = 10.0; // of the distance of vertices
+constexpr int    otherTries     = 4;
+constexpr double otherDistance  = 0.05;    // thinning of each, over that of the one before
+constexpr double shortCrease    = 10.0;    // of the distance of vertices
 constexpr Index  rimFlaws       = 5;       // a rim or a handle counts as so many defects
 constexpr double toleratedDefects = 0.002; // per vertex
 
@@ -256,8 +256,8 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	scaffold.spacing = distance;
 	scaffold.cell    = cell;
 
-	const std::vector<Triangle> front =
-		advancingFront(sites.points, sites.normals, options.longestEdge * localDistances(sites.points, distance));
+	const std::vector<Triangle> front = advancingFront(
+		sites.points, sites.normals, options.longestEdge * localDistances(sites.points, distance));
 	std::vector<Index>    copies;
 	std::vector<Triangle> triangles =
 		manifoldPart(front, static_cast<Index>(sites.points.cols()), copies);
@@ -332,7 +332,7 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 // Rims and handles. True ones are in every attempt, false ones are not.
 Index topologicalFeatures(const Scaffold& scaffold)
 {
-	const auto  rims    = static_cast<Index>(scaffold.mesh.rims().size());
+	const auto  rims = static_cast<Index>(scaffold.mesh.rims().size());
 	const Index handles =
 		(2 * scaffold.components - scaffold.mesh.eulerCharacteristic() - rims) / 2;
 	return rims + handles;
@@ -341,8 +341,8 @@ Index topologicalFeatures(const Scaffold& scaffold)
 // Per vertex: a coarse attempt has fewer of everything.
 double flawsOf(const Scaffold& scaffold)
 {
-	const Index flaws = scaffold.defects + scaffold.lostCreaseEdges +
-						rimFlaws * topologicalFeatures(scaffold);
+	const Index flaws =
+		scaffold.defects + scaffold.lostCreaseEdges + rimFlaws * topologicalFeatures(scaffold);
 	return double(flaws) / std::max<Index>(1, scaffold.mesh.vertexCount());
 }
 
@@ -425,8 +425,7 @@ Scaffold buildScaffold(
 
 	const double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
 	const Attempts tries{sample, order, cell, options};
-	Scaffold       best =
-		tries.coarserFrom(distance, creases, progress.sub(0.0, 0.4, "Triangulating"));
+	Scaffold best = tries.coarserFrom(distance, creases, progress.sub(0.0, 0.4, "Triangulating"));
 	// Whether the front crosses a crease is a matter of chance: other points, another try.
 	for (int k = 1; k <= otherTries && best.lostCreaseEdges > 0; ++k) {
 		progress.report(0.4 + 0.2 * k / otherTries);

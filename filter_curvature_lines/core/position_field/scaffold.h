@@ -17,8 +17,8 @@ struct FeatureLine {
 };
 
 struct ScaffoldOptions {
-	double targetVertices =
-		0.0; // of the quad mesh: triangles get about half as large as its faces; 0: any
+	// of the quad mesh: triangles get about half as large as its faces; 0: any
+	double targetVertices  = 0.0;
 	double thinning        = 1.2;  // least distance of vertices, in spacings of the cloud
 	double longestEdge     = 5.0;  // these in thinning distances:
 	double smallHole       = 10.0; // rims this short are filled

@@ -59,9 +59,8 @@ public:
 		const std::vector<Index>& component,
 		const std::vector<char>&  filled) :
 			// by name of component: all its edges are in the graph
-			m_mesh(mesh),
-			m_normals(normals), m_features(features), m_curves(curves), m_component(component),
-			m_filled(filled)
+			m_mesh(mesh), m_normals(normals), m_features(features), m_curves(curves),
+			m_component(component), m_filled(filled)
 	{
 		addEdgePoints();
 		addChords();
@@ -80,7 +79,7 @@ public:
 		return {std::move(positions), std::move(normals), m_edges, m_around, m_kept};
 	}
 	const std::vector<Index>& nodeComponents() const { return m_nodeComponents; }
-	const std::vector<char>&  removable() const
+	const std::vector<char>& removable() const
 	{
 		return m_removable;
 	} // edges only there to be filled
@@ -159,7 +158,7 @@ private:
 		const auto& chords = m_curves.chords;
 		for (std::size_t begin = 0, end; begin < chords.size(); begin = end) {
 			for (end = begin;
-				 end < chords.size() && chords[end].triangle == chords[begin].triangle;)
+			     end < chords.size() && chords[end].triangle == chords[begin].triangle;)
 				++end;
 			const Index t = chords[begin].triangle;
 			m_local.clear();
@@ -181,7 +180,7 @@ private:
 			int   order;
 			Index node;
 			bool  first; // of the two chords: owns the order of half-edges
-			bool  operator<(const Crossing& o) const { return order < o.order; }
+			bool operator<(const Crossing& o) const { return order < o.order; }
 		};
 		std::vector<std::vector<Crossing>> along(n);
 		struct Meeting {
@@ -244,7 +243,7 @@ private:
 		const auto e = static_cast<Index>(
 						   std::upper_bound(m_firstPoint.begin(), m_firstPoint.end(), node) -
 						   m_firstPoint.begin()) -
-					   1;
+		               1;
 		m_chordAt[node][m_mesh.edges()[e].left == t ? 0 : 1] = h;
 	}
 
@@ -290,7 +289,7 @@ private:
 		// Counter-clockwise from forward along the edge: its left triangle comes next.
 		for (std::size_t node = 0; node < m_chordAt.size(); ++node)
 			for (const Index h :
-				 {m_alongAt[node][0], m_chordAt[node][0], m_alongAt[node][1], m_chordAt[node][1]})
+			     {m_alongAt[node][0], m_chordAt[node][0], m_alongAt[node][1], m_chordAt[node][1]})
 				if (h >= 0)
 					m_around[node].push_back(h);
 	}
@@ -311,7 +310,7 @@ private:
 			Index first = pairs[0].first;
 			for (const auto& pair : pairs) // at a rim the fan has a beginning
 				if (m_mesh.edges()[pair.first].isRim() &&
-					std::none_of(pairs.begin(), pairs.end(), [&](const auto& o) {
+				    std::none_of(pairs.begin(), pairs.end(), [&](const auto& o) {
 						return o.second == pair.first;
 					}))
 					first = pair.first;

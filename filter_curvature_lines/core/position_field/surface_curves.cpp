@@ -90,8 +90,8 @@ integerLines(const TriangleMesh& mesh, const CrossField& field, const PositionFi
 			for (const auto& [p, q] : arcs)
 				curves.chords.push_back(
 					{t,
-					 {mesh.edgeOf(t, p.side), family[p.side][p.index]},
-					 {mesh.edgeOf(t, q.side), family[q.side][q.index]}});
+				     {mesh.edgeOf(t, p.side), family[p.side][p.index]},
+				     {mesh.edgeOf(t, q.side), family[q.side][q.index]}});
 			curves.ends += counts[0] + counts[1] + counts[2] - 2 * static_cast<Index>(arcs.size());
 		}
 	}

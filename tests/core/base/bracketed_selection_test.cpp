@@ -25,21 +25,34 @@ void expectSameAsSorted(const std::vector<double>& values)
 	const int    n       = static_cast<int>(values.size());
 	const double middle  = sorted.empty() ? 1.0 : sorted[sorted.size() / 2];
 	for (const double guess :
-		 {middle, 1.3 * middle, 0.2 * middle, 7.0 * middle, 1e9 * middle, 0.0, -1.0, 1e-320, infinity, std::nan("")})
+	     {middle,
+	      1.3 * middle,
+	      0.2 * middle,
+	      7.0 * middle,
+	      1e9 * middle,
+	      0.0,
+	      -1.0,
+	      1e-320,
+	      infinity,
+	      std::nan("")})
 		for (const double share : {0.0, 0.35, 0.5, 0.999}) {
 			std::size_t    asked = 0;
 			const Selected found = selectNear(
 				guess,
 				n,
 				valueAt,
-				[&](std::size_t count) { return asked = static_cast<std::size_t>(share * double(count)); },
+				[&](std::size_t count) {
+					return asked = static_cast<std::size_t>(share * double(count));
+				},
 				scratch);
 			if (sorted.empty()) {
 				EXPECT_LT(found.value, 0.0);
 				continue;
 			}
-			EXPECT_EQ(found.value, sorted[asked]) << n << " values, guess " << guess << ", share " << share;
-			EXPECT_EQ(found.next, sorted[std::min(asked + 1, sorted.size() - 1)]) << n << " values, guess " << guess;
+			EXPECT_EQ(found.value, sorted[asked])
+				<< n << " values, guess " << guess << ", share " << share;
+			EXPECT_EQ(found.next, sorted[std::min(asked + 1, sorted.size() - 1)])
+				<< n << " values, guess " << guess;
 			EXPECT_EQ(quantileNear(guess, n, valueAt, share, scratch), sorted[asked]);
 		}
 }

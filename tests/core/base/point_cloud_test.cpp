@@ -34,9 +34,9 @@ std::string refusal(const Matrix3Xd& positions, const Matrix3Xd& normals)
 
 TEST(PrepareCloud, UnitFrameAndBack)
 {
-	const auto sample   = torus();
-	const auto prepared = prepareCloud(sample.positions, 7.0 * sample.normals);
-	const auto& p       = prepared.cloud.positions;
+	const auto  sample   = torus();
+	const auto  prepared = prepareCloud(sample.positions, 7.0 * sample.normals);
+	const auto& p        = prepared.cloud.positions;
 	EXPECT_NEAR((p.rowwise().maxCoeff() - p.rowwise().minCoeff()).norm(), 1.0, 1e-12);
 	EXPECT_LT((p.rowwise().maxCoeff() + p.rowwise().minCoeff()).norm(), 1e-12);
 	for (Index i = 0; i < prepared.cloud.size(); ++i) {
@@ -49,15 +49,15 @@ TEST(PrepareCloud, UnitFrameAndBack)
 
 TEST(PrepareCloud, DropsAndMerges)
 {
-	const auto     sample    = torus();
-	const Index    n         = 300;
-	Matrix3Xd      positions = sample.positions, normals = sample.normals;
-	const double   nan       = std::numeric_limits<double>::quiet_NaN();
-	const double   inf       = std::numeric_limits<double>::infinity();
-	positions(1, 3)          = nan;
-	positions(0, 4)          = -inf;
+	const auto   sample    = torus();
+	const Index  n         = 300;
+	Matrix3Xd    positions = sample.positions, normals = sample.normals;
+	const double nan = std::numeric_limits<double>::quiet_NaN();
+	const double inf = std::numeric_limits<double>::infinity();
+	positions(1, 3)  = nan;
+	positions(0, 4)  = -inf;
 	normals.col(5).setZero();
-	normals(2, 6)    = nan;
+	normals(2, 6)     = nan;
 	positions.col(20) = positions.col(10); // tilted duplicates: the mean of the unit normals
 	normals.col(10)   = 5.0 * Vector3d(1, 0, 0);
 	normals.col(20)   = Vector3d(0, 1, 0);
@@ -100,7 +100,8 @@ TEST(PrepareCloud, RefusesWithACause)
 {
 	const auto sample = torus(40);
 	EXPECT_NE(refusal(sample.positions, Matrix3Xd(3, 0)).find("no normals"), std::string::npos);
-	EXPECT_NE(refusal(Matrix3Xd(3, 0), Matrix3Xd(3, 0)).find("no usable points"), std::string::npos);
+	EXPECT_NE(
+		refusal(Matrix3Xd(3, 0), Matrix3Xd(3, 0)).find("no usable points"), std::string::npos);
 	EXPECT_NE(
 		refusal(sample.positions.leftCols(19), sample.normals.leftCols(19)).find("at least 20"),
 		std::string::npos);
@@ -113,7 +114,8 @@ TEST(PrepareCloud, RefusesWithACause)
 	for (int i = 0; i < 40; ++i)
 		line.col(i) = Vector3d(1, 2, 3) + 0.1 * i * Vector3d(-3, 1, 2);
 	EXPECT_NE(refusal(line, sample.normals).find("one line"), std::string::npos);
-	EXPECT_NE(refusal(1e308 * sample.positions, sample.normals).find("too large"), std::string::npos);
+	EXPECT_NE(
+		refusal(1e308 * sample.positions, sample.normals).find("too large"), std::string::npos);
 	EXPECT_EQ(refusal(sample.positions, sample.normals), "");
 }
 

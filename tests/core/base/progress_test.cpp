@@ -15,7 +15,10 @@ namespace {
 
 class ThreadCount {
 public:
-	explicit ThreadCount(int threads) : m_before(omp_get_max_threads()) { omp_set_num_threads(threads); }
+	explicit ThreadCount(int threads) : m_before(omp_get_max_threads())
+	{
+		omp_set_num_threads(threads);
+	}
 	~ThreadCount() { omp_set_num_threads(m_before); }
 
 private:
@@ -44,9 +47,8 @@ TEST(ParallelFor, ReportsOnTheCallingThreadInOrder)
         fractions.push_back(fraction);
         return true;
     });
-	parallelFor(600, progress, [](Index) {
-		std::this_thread::sleep_for(std::chrono::milliseconds(1));
-	});
+	parallelFor(
+		600, progress, [](Index) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
 	ASSERT_GE(fractions.size(), 2u);
 	EXPECT_EQ(fractions.front(), 0.0);
 	EXPECT_EQ(fractions.back(), 1.0);
@@ -123,20 +125,26 @@ TEST(ParallelTasks, CancellationAndErrorsReachAll)
 		const Progress    progress([&](double, const char*) { return ++asked < 20; });
 		// Tasks that end only when told to; one ends early, so that its thread has nothing to report any more.
 		EXPECT_THROW(
-			parallelTasks(2, progress, [](Index i, const Progress& own) {
-				for (int k = 0; i == 1 || k < 3; ++k) {
-					own.report(0.1);
-					std::this_thread::sleep_for(std::chrono::milliseconds(1));
-				}
-			}),
+			parallelTasks(
+				2,
+				progress,
+				[](Index i, const Progress& own) {
+					for (int k = 0; i == 1 || k < 3; ++k) {
+						own.report(0.1);
+						std::this_thread::sleep_for(std::chrono::milliseconds(1));
+					}
+				}),
 			Cancelled);
 		EXPECT_THROW(
-			parallelTasks(2, {}, [](Index i, const Progress& own) {
-				if (i == 0)
-					throw std::runtime_error("failed");
-				for (;;)
-					own.report(0.1);
-			}),
+			parallelTasks(
+				2,
+				{},
+				[](Index i, const Progress& own) {
+					if (i == 0)
+						throw std::runtime_error("failed");
+					for (;;)
+						own.report(0.1);
+				}),
 			std::runtime_error);
 	}
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "denoising.h"
 #include "analytic_surfaces.h"
+#include "denoising.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -13,9 +13,9 @@ using Method = DenoisingOptions::Method;
 PointCloud noisyTorus()
 {
 	samples::SampleRequest request;
-	request.points = 800;
-	request.noise  = 0.005;
-	request.seed   = 3;
+	request.points                    = 800;
+	request.noise                     = 0.005;
+	request.seed                      = 3;
 	const samples::SampleCloud sample = samples::generate(request);
 	return prepareCloud(sample.positions, sample.normals).cloud;
 }
@@ -62,10 +62,10 @@ TEST(Denoising, PaperMovesByCorrectedNormals)
 {
 	Correction       correction(noisyTorus());
 	DenoisingOptions options;
-	options.method           = Method::Paper;
-	options.paper.iterations = 5;
-	PointCloud wrong         = correction.cloud;
-	wrong.normals            = -wrong.normals;
+	options.method               = Method::Paper;
+	options.paper.iterations     = 5;
+	PointCloud wrong             = correction.cloud;
+	wrong.normals                = -wrong.normals;
 	const DenoisingResult result = denoise(wrong, correction.counted(), options);
 	EXPECT_EQ(correction.calls, 1);
 	const EnergyDenoisingResult direct =

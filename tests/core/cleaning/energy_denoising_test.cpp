@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
 #include "energy_denoising.h"
 #include "robust_curvature.h"
-#include "analytic_surfaces.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -44,16 +44,16 @@ double rmsDistance(const std::string& surface, const Eigen::Matrix3Xd& positions
 {
 	double sum = 0.0;
 	for (Eigen::Index i = 0; i < positions.cols(); ++i)
-		sum += (positions.col(i) - samples::surface(surface).project(positions.col(i))).squaredNorm();
+		sum +=
+			(positions.col(i) - samples::surface(surface).project(positions.col(i))).squaredNorm();
 	return std::sqrt(sum / positions.cols());
 }
 
 double removedShare(
 	const std::string& surface, const PointCloud& cloud, const EnergyDenoisingOptions& options = {})
 {
-	return 1.0
-		   - rmsDistance(surface, denoised(cloud, options).positions)
-				 / rmsDistance(surface, cloud.positions);
+	return 1.0 - rmsDistance(surface, denoised(cloud, options).positions) /
+	                 rmsDistance(surface, cloud.positions);
 }
 
 // What a user without normals has: plane fits to 25 points, corrected by the robust estimate.
@@ -67,8 +67,8 @@ PointCloud withEstimatedNormals(PointCloud cloud)
 			local.col(k) = cloud.positions.col(near[k]);
 		local.colwise() -= local.rowwise().mean().eval();
 		const Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(local * local.transpose())
-							   .eigenvectors()
-							   .col(0);
+		                       .eigenvectors()
+		                       .col(0);
 		cloud.normals.col(i) = n.dot(cloud.normals.col(i)) < 0.0 ? Vector3d(-n) : n;
 	}
 	cloud.normals =
@@ -103,8 +103,8 @@ TEST(DenoisingEnergy, IsTheSumOverTrianglesOfTheNeighbors)
 					const Vector3d c = a.cross(b);
 					if (c.norm() <= 0.05 * a.norm() * b.norm())
 						continue;
-					const double e2 =
-						std::min((n - c.normalized()).squaredNorm(), (n + c.normalized()).squaredNorm());
+					const double e2 = std::min(
+						(n - c.normalized()).squaredNorm(), (n + c.normalized()).squaredNorm());
 					expected += kind == Energy::Squared ? e2 : std::pow(e2 + 0.01, 0.25);
 				}
 		DenoisingEnergy energy(cloud, neighbors, options);
@@ -135,7 +135,8 @@ TEST(DenoisingEnergy, GradientMatchesFiniteDifferences)
 				shifted[i]              = x[i] - step;
 				const double below      = energy(shifted, unused);
 				EXPECT_NEAR(
-					(above - below) / (2.0 * step), gradient[i],
+					(above - below) / (2.0 * step),
+					gradient[i],
 					1e-6 * gradient.cwiseAbs().maxCoeff());
 			}
 		}
@@ -161,14 +162,15 @@ TEST(DenoisingEnergy, HasNoUnitAndNoOrigin)
 	PointCloud          cloud     = noisyCloud(requestOf("torus", 500, 0.01));
 	const NeighborLists neighbors = sixSectors(cloud);
 	Eigen::VectorXd     gradient, moved;
-	const double        energy =
-		DenoisingEnergy(cloud, neighbors, {})(stacked(cloud.positions), gradient);
+	const double energy = DenoisingEnergy(cloud, neighbors, {})(stacked(cloud.positions), gradient);
 	const Eigen::Matrix3d rotation =
 		Eigen::AngleAxisd(1.3, Vector3d(1.0, -1.0, 3.0).normalized()).toRotationMatrix();
 	cloud.positions = (50.0 * rotation * cloud.positions).colwise() + Vector3d(3.0, 1.0, -7.0);
 	cloud.normals   = rotation * cloud.normals;
 	EXPECT_NEAR(
-		DenoisingEnergy(cloud, neighbors, {})(stacked(cloud.positions), moved), energy, 1e-8 * energy);
+		DenoisingEnergy(cloud, neighbors, {})(stacked(cloud.positions), moved),
+		energy,
+		1e-8 * energy);
 	EXPECT_NEAR(gradient.norm() / 50.0, moved.norm(), 1e-6 * moved.norm());
 }
 
@@ -206,7 +208,7 @@ TEST(Denoising, KeepsSharpEdgesGivenTheirNormals)
 	const PointCloud cloud = noisyCloud(requestOf("cube", 1500, 0.005));
 	const auto       after = denoised(cloud).positions;
 	EXPECT_LT(rmsDistance("cube", after), 0.5 * rmsDistance("cube", cloud.positions));
-	const auto& cube = samples::surface("cube");
+	const auto& cube    = samples::surface("cube");
 	double      before2 = 0.0, after2 = 0.0;
 	for (Index i = 0; i < cloud.size(); ++i) {
 		if (cube.featureDistance(cube.project(cloud.positions.col(i))) > 0.04) // about a spacing
@@ -221,20 +223,20 @@ TEST(Denoising, HardlyMovesACleanCloud)
 {
 	const PointCloud     cloud = noisyCloud(requestOf("torus", 2000, 0.0));
 	const NeighborSearch search(cloud.positions);
-	const double         h     = minimumNeighborhoods(cloud, search).medianSpacing;
+	const double         h = minimumNeighborhoods(cloud, search).medianSpacing;
 	EXPECT_LT(rmsDistance("torus", denoised(cloud).positions), 0.06 * h);
 }
 
 TEST(Denoising, LowersTheEnergyWithinTheTrustBox)
 {
-	const PointCloud     cloud   = noisyCloud(requestOf("torus", 1000, 0.02));
+	const PointCloud     cloud = noisyCloud(requestOf("torus", 1000, 0.02));
 	const NeighborSearch search(cloud.positions);
 	const auto           minimum = minimumNeighborhoods(cloud, search);
 	for (const Optimizer optimizer : {Optimizer::LBFGSB, Optimizer::PolakRibiere}) {
 		EnergyDenoisingOptions options;
-		options.optimizer  = optimizer;
-		options.iterations = 30;
-		options.maxMove    = 0.2; // tight, so that it is reached
+		options.optimizer   = optimizer;
+		options.iterations  = 30;
+		options.maxMove     = 0.2; // tight, so that it is reached
 		const auto   result = denoiseByEnergy(cloud, search, minimum, options);
 		const double move   = (result.positions - cloud.positions).cwiseAbs().maxCoeff();
 		EXPECT_LE(move, 0.2 * minimum.medianSpacing * (1.0 + 1e-9));
@@ -276,15 +278,15 @@ TEST(Denoising, SameResultForAnyNumberOfThreads)
 
 TEST(Denoising, ReportsAndCanBeCancelled)
 {
-	const PointCloud     cloud   = noisyCloud(requestOf("torus", 500, 0.01));
+	const PointCloud     cloud = noisyCloud(requestOf("torus", 500, 0.01));
 	const NeighborSearch search(cloud.positions);
 	const auto           minimum = minimumNeighborhoods(cloud, search);
 	for (const Optimizer optimizer : {Optimizer::LBFGSB, Optimizer::PolakRibiere}) {
 		EnergyDenoisingOptions options;
-		options.optimizer  = optimizer;
-		options.iterations = 30;
-		double last        = 0.0;
-		int    reports     = 0;
+		options.optimizer      = optimizer;
+		options.iterations     = 30;
+		double         last    = 0.0;
+		int            reports = 0;
 		const Progress watch([&](double fraction, const char*) {
 			EXPECT_GE(fraction, last);
 			EXPECT_LE(fraction, 1.0);
@@ -304,8 +306,8 @@ TEST(Denoising, SurvivesDegenerateClouds)
 	PointCloud line, plane, plate;
 	line.positions = Eigen::Matrix3Xd::Zero(3, 20);
 	line.positions.row(0).setLinSpaced(20, -0.5, 0.5);
-	line.normals  = Vector3d::UnitZ().replicate(1, 20);
-	plane         = noisyCloud(requestOf("plane", 20, 0.0));
+	line.normals = Vector3d::UnitZ().replicate(1, 20);
+	plane        = noisyCloud(requestOf("plane", 20, 0.0));
 	plate.positions.resize(3, 400);
 	plate.normals.resize(3, 400);
 	const PointCloud side = noisyCloud(requestOf("plane", 200, 0.002));
@@ -318,7 +320,7 @@ TEST(Denoising, SurvivesDegenerateClouds)
 				options.neighbors  = neighbors;
 				options.optimizer  = optimizer;
 				options.iterations = 20;
-				const auto result = denoised(cloud, options);
+				const auto result  = denoised(cloud, options);
 				EXPECT_TRUE(result.positions.allFinite());
 				EXPECT_LE(result.finalEnergy, result.initialEnergy);
 			}

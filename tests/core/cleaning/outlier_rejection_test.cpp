@@ -118,7 +118,7 @@ TEST(RobustVote, FarOutliers)
 {
 	// Beyond an edge of the cube its faces' planes go on.
 	for (const auto& [surface, recall] :
-		 std::map<std::string, double>{{"torus", 0.95}, {"helicoid", 0.95}, {"cube", 0.94}}) {
+	     std::map<std::string, double>{{"torus", 0.95}, {"helicoid", 0.95}, {"cube", 0.94}}) {
 		SCOPED_TRACE(surface);
 		const Outcome outcome = reject(surface, 4000, 0.0025, 0.05);
 		EXPECT_GE(outcome.recall, recall);
@@ -193,8 +193,7 @@ TEST(RobustVote, DenseClustersDoNotOutvoteTheSurface)
 	Matrix3Xd       positions(3, 4300);
 	positions.leftCols(4000) = sample.positions * unit;
 	for (int c = 0; c < 3; ++c) {
-		const Vector3d middle =
-			unit * (sample.footPoints.col(c) + 0.05 * sample.normals.col(c));
+		const Vector3d middle = unit * (sample.footPoints.col(c) + 0.05 * sample.normals.col(c));
 		for (int k = 0; k < 100; ++k)
 			positions.col(4000 + 100 * c + k) = middle + 0.0015 * random.normal3();
 	}
@@ -212,7 +211,8 @@ TEST(RobustVote, NarrowTipsStay)
 	Matrix3Xd       positions(3, 12000);
 	Index           tip = 0;
 	for (Index i = 0; i < positions.cols();) {
-		const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5), r = std::hypot(x, y);
+		const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5),
+					 r     = std::hypot(x, y);
 		const double slope = 2.0 * r / (width * width) * thorn(r);
 		if (random.uniform(0.0, 4.5) > std::sqrt(1.0 + slope * slope)) // even on the surface
 			continue;
@@ -281,11 +281,11 @@ TEST(RejectOutliers, RigidMotionScalingAndNormalsDoNotMatter)
 	PointCloud       moved = cloud;
 	moved.normals *= -1.0;
 	moved.positions = (Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix() *
-					   cloud.positions)
-						  .colwise() +
-					  Vector3d(0.01, -0.02, 0.03);
+	                   cloud.positions)
+	                      .colwise() +
+	                  Vector3d(0.01, -0.02, 0.03);
 	EXPECT_EQ(here, rejectOutliers(moved).outlier);
-	moved           = cloud;
+	moved = cloud;
 	moved.positions *= 0.5;
 	EXPECT_EQ(here, rejectOutliers(moved).outlier);
 }
@@ -318,9 +318,9 @@ TEST(RejectOutliers, DegenerateClouds)
 TEST(RejectOutliers, CanBeCancelled)
 {
 	samples::SampleRequest request;
-	request.points         = 500;
-	const auto     sample  = samples::generate(request);
-	const auto     cloud   = prepareCloud(sample.positions, sample.normals).cloud;
+	request.points        = 500;
+	const auto     sample = samples::generate(request);
+	const auto     cloud  = prepareCloud(sample.positions, sample.normals).cloud;
 	const Progress stopped([](double fraction, const char*) { return fraction < 0.1; });
 	EXPECT_THROW(rejectOutliers(cloud, {}, stopped), Cancelled);
 }

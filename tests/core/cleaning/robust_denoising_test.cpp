@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
 #include "neighborhoods.h"
 #include "robust_denoising.h"
-#include "analytic_surfaces.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -31,8 +31,8 @@ void estimateNormals(PointCloud& cloud)
 			local.col(k) = cloud.positions.col(near[k]);
 		local.colwise() -= local.rowwise().mean().eval();
 		const Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(local * local.transpose())
-							   .eigenvectors()
-							   .col(0);
+		                       .eigenvectors()
+		                       .col(0);
 		cloud.normals.col(i) = n.dot(cloud.normals.col(i)) < 0.0 ? Vector3d(-n) : n;
 	}
 }
@@ -51,12 +51,12 @@ struct NoisyCloud {
 			surface(samples::surface(name))
 	{
 		samples::SampleRequest request;
-		request.surface = name;
-		request.points  = points;
-		request.noise   = noise;
-		request.seed    = seed;
+		request.surface                   = name;
+		request.points                    = points;
+		request.noise                     = noise;
+		request.seed                      = seed;
 		const samples::SampleCloud sample = samples::generate(request);
-		cloud = {sample.positions / surface.diagonal(), sample.normals};
+		cloud                             = {sample.positions / surface.diagonal(), sample.normals};
 		estimateNormals(cloud);
 	}
 	Vector3d foot(const Vector3d& p) const
@@ -88,7 +88,8 @@ struct NoisyCloud {
 	}
 	double featureDistance(Index i) const
 	{
-		return surface.featureDistance(surface.project(cloud.positions.col(i) * surface.diagonal()));
+		return surface.featureDistance(
+			surface.project(cloud.positions.col(i) * surface.diagonal()));
 	}
 	double rimDistance(Index i) const
 	{
@@ -100,9 +101,10 @@ double meanNormalError(const NoisyCloud& noisy, const RobustDenoisingResult& res
 {
 	double sum = 0.0;
 	for (Index i = 0; i < noisy.cloud.size(); ++i) {
-		const Vector3d foot = noisy.surface.project(result.positions.col(i) * noisy.surface.diagonal());
-		sum += std::acos(std::clamp(
-			result.normals.col(i).dot(noisy.surface.frame(foot).normal), -1.0, 1.0));
+		const Vector3d foot =
+			noisy.surface.project(result.positions.col(i) * noisy.surface.diagonal());
+		sum += std::acos(
+			std::clamp(result.normals.col(i).dot(noisy.surface.frame(foot).normal), -1.0, 1.0));
 	}
 	return sum / noisy.cloud.size() * 180.0 / EIGEN_PI;
 }
@@ -199,12 +201,12 @@ TEST(RobustDenoising, FollowsTheDensity)
 // Five times the noise on one side: either side as clean as it would be alone.
 TEST(RobustDenoising, FollowsTheNoise)
 {
-	NoisyCloud      noisy("torus", 6000, 0.0), louder("torus", 6000, 0.01);
-	const NoisyCloud quiet("torus", 6000, 0.002);
+	NoisyCloud         noisy("torus", 6000, 0.0), louder("torus", 6000, 0.01);
+	const NoisyCloud   quiet("torus", 6000, 0.002);
 	std::vector<Index> little, much;
 	for (Index i = 0; i < noisy.cloud.size(); ++i) {
 		// The same random numbers: the clouds differ in the noise only.
-		const bool left          = noisy.cloud.positions(0, i) < 0.0;
+		const bool left              = noisy.cloud.positions(0, i) < 0.0;
 		noisy.cloud.positions.col(i) = (left ? quiet : louder).cloud.positions.col(i);
 		if (std::abs(noisy.cloud.positions(0, i)) > 0.05) // the step itself is nobody's scan
 			(left ? little : much).push_back(i);
@@ -231,7 +233,8 @@ TEST(RobustDenoising, NeedsNoMoreOfNormalsThanMostOfTheirSides)
 					Vector3d(normal(random), normal(random), normal(random)).normalized();
 		const auto result = denoiseRobustly(noisy.cloud);
 		for (Index i = 0; i < noisy.cloud.size(); ++i) {
-			const Vector3d foot = noisy.surface.project(result.positions.col(i) * noisy.surface.diagonal());
+			const Vector3d foot =
+				noisy.surface.project(result.positions.col(i) * noisy.surface.diagonal());
 			EXPECT_GT(result.normals.col(i).dot(noisy.surface.frame(foot).normal), 0.5);
 		}
 	}
@@ -300,9 +303,9 @@ TEST(RobustDenoising, MovesAndScalesWithTheCloud)
 	const Vector3d           shift(0.03, -0.01, 0.02);
 	constexpr double         scale = 0.7;
 	PointCloud               moved;
-	moved.positions   = (scale * rotation * noisy.cloud.positions).colwise() + shift;
-	moved.normals     = rotation * noisy.cloud.normals;
-	const auto result = denoiseRobustly(noisy.cloud), other = denoiseRobustly(moved);
+	moved.positions        = (scale * rotation * noisy.cloud.positions).colwise() + shift;
+	moved.normals          = rotation * noisy.cloud.normals;
+	const auto      result = denoiseRobustly(noisy.cloud), other = denoiseRobustly(moved);
 	const Matrix3Xd expected = (scale * rotation * result.positions).colwise() + shift;
 	EXPECT_LT((other.positions - expected).colwise().norm().maxCoeff(), 1e-6);
 	EXPECT_LT((other.normals - rotation * result.normals).colwise().norm().maxCoeff(), 1e-4);
@@ -315,13 +318,13 @@ TEST(RobustDenoising, ReportsAndCanBeCancelled)
 	double           last    = 0.0;
 	int              reports = 0;
 	const Progress   watch([&](double fraction, const char* what) {
-		EXPECT_GE(fraction, last - 1e-12);
-		EXPECT_LE(fraction, 1.0);
-		EXPECT_NE(std::string(what), "");
-		last = fraction;
-		++reports;
-		return true;
-	});
+        EXPECT_GE(fraction, last - 1e-12);
+        EXPECT_LE(fraction, 1.0);
+        EXPECT_NE(std::string(what), "");
+        last = fraction;
+        ++reports;
+        return true;
+    });
 	denoiseRobustly(noisy.cloud, {}, watch);
 	EXPECT_GT(reports, 20);
 	const Progress cancel([](double fraction, const char*) { return fraction < 0.3; });
@@ -332,12 +335,12 @@ TEST(RobustDenoising, SurvivesDegenerateClouds)
 {
 	samples::Random random(5, 1);
 	const auto      filled = [](Index n, const auto& position) {
-		PointCloud cloud;
-		cloud.positions.resize(3, n);
-		for (Index i = 0; i < n; ++i)
-			cloud.positions.col(i) = position(i);
-		cloud.normals = Vector3d::UnitZ().replicate(1, n);
-		return cloud;
+        PointCloud cloud;
+        cloud.positions.resize(3, n);
+        for (Index i = 0; i < n; ++i)
+            cloud.positions.col(i) = position(i);
+        cloud.normals = Vector3d::UnitZ().replicate(1, n);
+        return cloud;
 	};
 	const auto inPlane = [&](Index) {
 		return Vector3d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0.0);

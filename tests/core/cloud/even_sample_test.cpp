@@ -54,7 +54,7 @@ TEST(EvenSample, ThinsDensePartsAndKeepsSparseOnes)
 	for (Index i = 0; i < cloud.size(); ++i)
 		if (cloud.positions(0, i) >= 0.0 || i % 10 == 0)
 			uneven.push_back(i);
-	const PointCloud scan = chosen(cloud, uneven);
+	const PointCloud scan   = chosen(cloud, uneven);
 	Index            sparse = 0, keptSparse = 0, keptDense = 0;
 	for (Index i = 0; i < scan.size(); ++i)
 		sparse += scan.positions(0, i) < -0.05;
@@ -86,19 +86,21 @@ TEST(EvenSample, DoesNotFavourNoise)
 	request.surface      = "torus";
 	request.points       = 40000;
 	request.noise        = 0.0025;
-	const auto  noisy    = samples::generate(request);
+	const auto noisy     = samples::generate(request);
 	request.noise        = 0.0;
-	const auto  exact    = samples::generate(request);
-	const auto  deviation = [&](const std::vector<Index>& which) {
+	const auto exact     = samples::generate(request);
+	const auto deviation = [&](const std::vector<Index>& which) {
 		double sum = 0.0;
 		for (const Index i : which)
-			sum += std::abs((noisy.positions.col(i) - exact.positions.col(i)).dot(exact.normals.col(i)));
+			sum += std::abs(
+				(noisy.positions.col(i) - exact.positions.col(i)).dot(exact.normals.col(i)));
 		return sum / double(which.size());
 	};
 	std::vector<Index> all(40000);
 	std::iota(all.begin(), all.end(), 0);
 	EXPECT_LT(deviation(all), 0.02);
-	EXPECT_NEAR(deviation(evenSample({noisy.positions, noisy.normals}, 8000)) / deviation(all), 1.0, 0.05);
+	EXPECT_NEAR(
+		deviation(evenSample({noisy.positions, noisy.normals}, 8000)) / deviation(all), 1.0, 0.05);
 }
 
 } // namespace

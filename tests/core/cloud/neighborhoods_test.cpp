@@ -35,9 +35,8 @@ std::vector<Index> sortedByDistance(const Matrix3Xd& positions, const Vector3d& 
 		const Vector3d d = positions.col(i) - query;
 		return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
 	};
-	std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-		return distance(a) < distance(b);
-	});
+	std::stable_sort(
+		order.begin(), order.end(), [&](Index a, Index b) { return distance(a) < distance(b); });
 	return order;
 }
 
@@ -109,8 +108,8 @@ TEST(MinimumNeighborhoods, OnePerSixtyDegreesAndProjectedClosest)
 	const NeighborSearch       search(cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(cloud, search);
 	for (Index i = 0; i < cloud.size(); ++i) {
-		const auto         row = minimum.neighbors[i];
-		const TangentFrame frame(cloud.normals.col(i));
+		const auto          row = minimum.neighbors[i];
+		const TangentFrame  frame(cloud.normals.col(i));
 		std::vector<double> angles;
 		double              sum = 0.0;
 		for (const Index j : row) {
@@ -141,14 +140,14 @@ TEST(MinimumNeighborhoods, OnePerSixtyDegreesAndProjectedClosest)
 
 TEST(MinimumNeighborhoods, IndependentOfAxesAndSignOfNormals)
 {
-	const PointCloud cloud = sampled("torus", 800);
-	PointCloud       moved = cloud, flipped = cloud;
+	const PointCloud         cloud = sampled("torus", 800);
+	PointCloud               moved = cloud, flipped = cloud;
 	const Eigen::Quaterniond turn(0.3, -0.5, 0.7, 0.4);
 	moved.positions = turn.normalized().toRotationMatrix() * cloud.positions;
 	moved.normals   = turn.normalized().toRotationMatrix() * cloud.normals;
 	flipped.normals *= -1.0;
 	const auto rowsOf = [](const PointCloud& c) {
-		const auto                      minimum = minimumNeighborhoods(c, NeighborSearch(c.positions));
+		const auto minimum = minimumNeighborhoods(c, NeighborSearch(c.positions));
 		std::vector<std::vector<Index>> rows;
 		for (Index i = 0; i < c.size(); ++i) {
 			rows.emplace_back(minimum.neighbors[i].begin(), minimum.neighbors[i].end());
@@ -171,7 +170,8 @@ TEST(MinimumNeighborhoods, BoundaryIsTheRimAndNothingElse)
 		return flags;
 	};
 	const auto closed = flagged(sampled("torus", 3000));
-	EXPECT_LE(std::count(closed.begin(), closed.end(), 1), 3); // .001: random gaps of a random sampling
+	// .001: random gaps of a random sampling
+	EXPECT_LE(std::count(closed.begin(), closed.end(), 1), 3);
 
 	const PointCloud plane = sampled("plane", 2500, true);
 	const auto       flags = flagged(plane);
@@ -200,7 +200,7 @@ TEST(MinimumNeighborhoods, SparsePartIsNotABoundary)
 	cloud.normals.row(2).setOnes();
 	const auto minimum = minimumNeighborhoods(cloud, NeighborSearch(cloud.positions));
 	for (Index i = 3600; i < cloud.size(); ++i) {
-		const auto p = cloud.positions.col(i);
+		const auto p      = cloud.positions.col(i);
 		const bool inside = p.x() > 1.25 && p.x() < 1.85 && p.y() > 0.15 && p.y() < 0.85;
 		EXPECT_TRUE(!inside || minimum.status[i] == PointStatus::Ok) << p.transpose();
 	}
@@ -208,8 +208,8 @@ TEST(MinimumNeighborhoods, SparsePartIsNotABoundary)
 
 TEST(MinimumNeighborhoods, OtherSheetAndStrayPoints)
 {
-	PointCloud sheet = sampled("plane", 900, true);
-	PointCloud cloud;
+	PointCloud  sheet = sampled("plane", 900, true);
+	PointCloud  cloud;
 	const Index n = sheet.size();
 	cloud.positions.resize(3, 2 * n + 1);
 	cloud.normals.resize(3, 2 * n + 1);

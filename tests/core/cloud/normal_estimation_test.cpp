@@ -65,8 +65,8 @@ TEST(NormalEstimation, DegenerateInputGivesUnitVectorsOrAnError)
 {
 	EXPECT_THROW(estimateNormals(Eigen::Matrix3Xd::Zero(3, 2)), InputError);
 	for (const Eigen::Matrix3Xd& points :
-		 {Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, 30)),
-		  Eigen::Matrix3Xd(Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(30, 0, 1))}) {
+	     {Eigen::Matrix3Xd(Eigen::Matrix3Xd::Zero(3, 30)),
+	      Eigen::Matrix3Xd(Eigen::Vector3d::UnitX() * Eigen::RowVectorXd::LinSpaced(30, 0, 1))}) {
 		const Eigen::Matrix3Xd normals = estimateNormals(points);
 		EXPECT_TRUE(normals.allFinite());
 		EXPECT_LT((normals.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-9);

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "shuffled_order.h"
 #include "analytic_surfaces.h"
+#include "shuffled_order.h"
 
 namespace curvature_lines {
 namespace {
@@ -16,10 +16,10 @@ namespace {
 Eigen::Matrix3Xd unitCloud(const std::string& surface, int points, double noise = 0.0)
 {
 	samples::SampleRequest request;
-	request.surface = surface;
-	request.points  = points;
-	request.noise   = noise;
-	request.seed    = 3;
+	request.surface                   = surface;
+	request.points                    = points;
+	request.noise                     = noise;
+	request.seed                      = 3;
 	const samples::SampleCloud sample = samples::generate(request);
 	return prepareCloud(sample.positions, sample.normals).cloud.positions;
 }
@@ -64,7 +64,8 @@ TEST(ShuffledOrder, PointsAtEqualDistanceAreToldApartByTheirCoordinates)
 {
 	Eigen::Matrix3Xd corners(3, 8); // all at the same distance from the centroid
 	for (int i = 0; i < 8; ++i)
-		corners.col(i) = Eigen::Vector3d(i & 1, (i >> 1) & 1, i >> 2) / 2.0 - Eigen::Vector3d::Constant(0.25);
+		corners.col(i) =
+			Eigen::Vector3d(i & 1, (i >> 1) & 1, i >> 2) / 2.0 - Eigen::Vector3d::Constant(0.25);
 	const Eigen::Matrix3Xd   reversed = corners.rowwise().reverse();
 	const std::vector<Index> order = shuffledOrder(corners), other = shuffledOrder(reversed);
 	for (int k = 0; k < 8; ++k)
@@ -77,7 +78,8 @@ TEST(ShuffledOrder, BlocksAreFairSamples)
 	const Eigen::Matrix3Xd   positions = unitCloud("torus", 8000);
 	const std::vector<Index> order     = shuffledOrder(positions);
 	const auto               octant    = [&](Index i) {
-        return int(positions(0, i) > 0) + 2 * int(positions(1, i) > 0) + 4 * int(positions(2, i) > 0);
+        return int(positions(0, i) > 0) + 2 * int(positions(1, i) > 0) +
+               4 * int(positions(2, i) > 0);
 	};
 	std::array<double, 8> whole{};
 	for (const Index i : order)

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "spatial_order.h"
 #include "analytic_surfaces.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 Eigen::Matrix3Xd torus(int points)
 {
 	samples::SampleRequest request;
-	request.points = points;
-	request.seed   = 3;
+	request.points                    = points;
+	request.seed                      = 3;
 	const samples::SampleCloud sample = samples::generate(request);
 	return prepareCloud(sample.positions, sample.normals).cloud.positions;
 }
@@ -45,8 +45,7 @@ TEST(SpatialOrder, BelongsToThePointsNotToTheirOrder)
 	std::iota(moved.begin(), moved.end(), 0);
 	std::shuffle(moved.begin(), moved.end(), std::mt19937(1));
 	const Eigen::Matrix3Xd permuted = columnsOf(positions, moved);
-	EXPECT_EQ(
-		SpatialOrder(positions).arrange(positions), SpatialOrder(permuted).arrange(permuted));
+	EXPECT_EQ(SpatialOrder(positions).arrange(positions), SpatialOrder(permuted).arrange(permuted));
 }
 
 TEST(SpatialOrder, NearPointsFollowEachOther)
@@ -54,7 +53,7 @@ TEST(SpatialOrder, NearPointsFollowEachOther)
 	const Eigen::Matrix3Xd positions = torus(4000);
 	const Eigen::Matrix3Xd arranged  = SpatialOrder(positions).arrange(positions);
 	const auto             step      = [](const Eigen::Matrix3Xd& p) {
-		return (p.rightCols(p.cols() - 1) - p.leftCols(p.cols() - 1)).colwise().norm().mean();
+        return (p.rightCols(p.cols() - 1) - p.leftCols(p.cols() - 1)).colwise().norm().mean();
 	};
 	EXPECT_LT(step(arranged), 0.1 * step(positions));
 }

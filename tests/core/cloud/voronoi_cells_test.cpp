@@ -99,7 +99,8 @@ TEST(VoronoiCells, NeighboursAreSymmetricAndSorted)
 		EXPECT_TRUE(std::is_sorted(row.begin(), row.end()));
 		for (Index j : row) {
 			EXPECT_NE(i, j);
-			EXPECT_TRUE(std::binary_search(cells.neighbors(j).begin(), cells.neighbors(j).end(), i));
+			EXPECT_TRUE(
+				std::binary_search(cells.neighbors(j).begin(), cells.neighbors(j).end(), i));
 		}
 	}
 }
@@ -149,8 +150,8 @@ TEST(VoronoiCells, LocateIsTheNearestSiteFromAnyStart)
 		const VoronoiCells cells(points);
 		samples::Random    random(9, 1);
 		for (int k = 0; k < 500; ++k) {
-			const Index    near = random.index(points.cols());
-			const Vector3d p    = points.col(near) + 0.2 * random.normal3();
+			const Index    near     = random.index(points.cols());
+			const Vector3d p        = points.col(near) + 0.2 * random.normal3();
 			const Index    expected = nearestByBruteForce(points, p);
 			EXPECT_EQ(cells.locate(p, random.index(points.cols())), expected);
 			EXPECT_EQ(cells.locate(p, near), expected);
@@ -160,7 +161,7 @@ TEST(VoronoiCells, LocateIsTheNearestSiteFromAnyStart)
 
 TEST(VoronoiCells, LocateBreaksTiesByIndexWhereFourCellsMeet)
 {
-	const Index        rows = 8;
+	const Index        rows   = 8;
 	const Matrix3Xd    points = planarGrid(rows);
 	const VoronoiCells cells(points);
 	for (Index r = 0; r + 1 < rows; ++r)
@@ -181,9 +182,9 @@ void expectExactWalk(
 	double       t     = 0.0;
 	const double slack = 1e-12;
 	const auto   check = [&](double from, double to) {
-		const Vector3d middle = a + 0.5 * (from + to) * (b - a);
-		const Index    best   = nearestByBruteForce(points, middle);
-		EXPECT_LE((points.col(cell) - middle).norm(), (points.col(best) - middle).norm() + slack);
+        const Vector3d middle = a + 0.5 * (from + to) * (b - a);
+        const Index    best   = nearestByBruteForce(points, middle);
+        EXPECT_LE((points.col(cell) - middle).norm(), (points.col(best) - middle).norm() + slack);
 	};
 	for (const VoronoiCells::Crossing& wall : walls) {
 		EXPECT_EQ(wall.from, cell);

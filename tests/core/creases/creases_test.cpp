@@ -10,8 +10,8 @@
 #include <omp.h>
 
 #include "creases.h"
-#include "robust_denoising.h"
 #include "estimated_field.h"
+#include "robust_denoising.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -67,9 +67,9 @@ samples::SampleCloud sampled(const std::string& surface, int points, double nois
 // As a scan: normals of plane fits, denoised.
 Found findInScan(const std::string& surface, int points, double noise)
 {
-	const auto    sample   = sampled(surface, points, noise);
-	PreparedCloud prepared = prepareCloud(sample.positions, planeFitNormals(sample, 16));
-	const auto    denoised = denoiseRobustly(prepared.cloud);
+	const auto    sample     = sampled(surface, points, noise);
+	PreparedCloud prepared   = prepareCloud(sample.positions, planeFitNormals(sample, 16));
+	const auto    denoised   = denoiseRobustly(prepared.cloud);
 	prepared.cloud.positions = denoised.positions;
 	prepared.cloud.normals   = denoised.normals;
 	return find(std::move(prepared));
@@ -96,13 +96,16 @@ void expectSound(const Found& found)
 				EXPECT_LT(step.norm(), 1.6 * even);
 				EXPECT_GT(step.dot(curve.tangents.col(v)), 0.0);
 			}
-			const Vector3d left = curve.left.col(v), right = curve.right.col(v), tangent = curve.tangents.col(v);
+			const Vector3d left = curve.left.col(v), right = curve.right.col(v),
+						   tangent = curve.tangents.col(v);
 			EXPECT_GT(tangent.dot(left.cross(right)) * curve.angle[v], 0.0);
 		}
-		for (const auto& [corner, v] : {std::pair(curve.start, Index(0)), std::pair(curve.end, curve.size() - 1)})
+		for (const auto& [corner, v] :
+		     {std::pair(curve.start, Index(0)), std::pair(curve.end, curve.size() - 1)})
 			if (corner >= 0) {
 				EXPECT_FALSE(curve.closed);
-				EXPECT_LT((creases.corners[corner].position - curve.positions.col(v)).norm(), 1e-12);
+				EXPECT_LT(
+					(creases.corners[corner].position - curve.positions.col(v)).norm(), 1e-12);
 				const auto& there = creases.corners[corner].curves;
 				EXPECT_NE(std::find(there.begin(), there.end(), k), there.end());
 			}
@@ -144,7 +147,7 @@ Errors errorsOf(const Found& found, const Edges& edges, double diagonal)
 		for (double t = 0.0; t <= 1.0; t += 0.01) {
 			const Vector3d p = (1.0 - t) * edges.from.col(e) + t * edges.to.col(e);
 			errors.gap       = std::max(
-				errors.gap, (vertices.colwise() - p).colwise().norm().minCoeff() / found.spacing());
+                errors.gap, (vertices.colwise() - p).colwise().norm().minCoeff() / found.spacing());
 		}
 	return errors;
 }
@@ -219,14 +222,16 @@ TEST(Creases, ConcaveEdge)
 			EXPECT_GT(curve.angle.maxCoeff() * curve.angle.minCoeff(), 0.0);
 		}
 		EXPECT_EQ(concave, 1);
-		const Matrix3Xd vertices = found.vertices();
-		double          sum      = 0.0;
-		const samples::AnalyticSurface& shape = samples::surface("l_block");
+		const Matrix3Xd                 vertices = found.vertices();
+		double                          sum      = 0.0;
+		const samples::AnalyticSurface& shape    = samples::surface("l_block");
 		for (Eigen::Index v = 0; v < vertices.cols(); ++v) {
 			const Vector3d foot = shape.project(vertices.col(v));
-			sum += (foot - vertices.col(v)).squaredNorm() + std::pow(shape.featureDistance(foot), 2);
+			sum +=
+				(foot - vertices.col(v)).squaredNorm() + std::pow(shape.featureDistance(foot), 2);
 		}
-		EXPECT_LT(std::sqrt(sum / vertices.cols()) / shape.diagonal(), noise > 0.0 ? 0.0025 : 0.0005);
+		EXPECT_LT(
+			std::sqrt(sum / vertices.cols()) / shape.diagonal(), noise > 0.0 ? 0.0025 : 0.0005);
 	}
 }
 
@@ -241,7 +246,7 @@ TEST(Creases, ClosedCircles)
 		double          sum      = 0.0;
 		for (Eigen::Index v = 0; v < vertices.cols(); ++v)
 			sum += std::pow(vertices.col(v).head<2>().norm() - 0.5, 2) +
-				std::pow(std::abs(vertices(2, v)) - 0.5, 2);
+			       std::pow(std::abs(vertices(2, v)) - 0.5, 2);
 		EXPECT_LT(std::sqrt(sum / vertices.cols()) / std::sqrt(3.0), noise > 0.0 ? 0.003 : 0.001);
 		for (const CreaseCurve& curve : found.creases.curves) {
 			EXPECT_TRUE(curve.closed);
@@ -262,7 +267,8 @@ TEST_P(SmoothSurface, HasNone)
 INSTANTIATE_TEST_SUITE_P(
 	Creases,
 	SmoothSurface,
-	testing::Values("torus", "sphere", "ellipsoid", "helicoid", "capsule", "cylinder", "bent_sheet", "plane"),
+	testing::Values(
+		"torus", "sphere", "ellipsoid", "helicoid", "capsule", "cylinder", "bent_sheet", "plane"),
 	[](const auto& info) { return std::string(info.param); });
 
 // A roof whose angle `degrees(y)` between the slopes' normals varies along its ridge, the y axis.
@@ -275,10 +281,12 @@ Found findOnRoof(Degrees degrees, const CreaseOptions& options = {})
 	Matrix3Xd    positions(3, n), normals(3, n);
 	for (int i = 0; i < n; ++i) {
 		const double x = 2.0 * uniform() - 1.0, y = 3.0 * uniform();
-		const auto   slope = [&](double at) { return std::tan(0.5 * degrees(at) * EIGEN_PI / 180.0); };
+		const auto   slope = [&](double at) {
+            return std::tan(0.5 * degrees(at) * EIGEN_PI / 180.0);
+		};
 		const double h = 1e-4, bend = (slope(y + h) - slope(y - h)) / (2.0 * h);
 		positions.col(i) = Vector3d(x, y, -std::abs(x) * slope(y));
-		normals.col(i)   = Vector3d(std::copysign(slope(y), x), std::abs(x) * bend, 1.0).normalized();
+		normals.col(i) = Vector3d(std::copysign(slope(y), x), std::abs(x) * bend, 1.0).normalized();
 	}
 	return find(positions, normals, options);
 }
@@ -315,8 +323,8 @@ TEST(Creases, FadingCreaseEndsFreely)
 
 TEST(Creases, ThinPlate)
 {
-	std::mt19937 engine(3);
-	const auto   uniform = [&](double half) { return half * (engine() / 2147483648.0 - 1.0); };
+	std::mt19937   engine(3);
+	const auto     uniform = [&](double half) { return half * (engine() / 2147483648.0 - 1.0); };
 	const Vector3d half(0.5, 0.5, 0.06);
 	const int      n = 9000;
 	Matrix3Xd      positions(3, n), normals(3, n);
@@ -344,7 +352,8 @@ TEST(Creases, TipOfAConeIsNone)
 	const int    n = 3000;
 	Matrix3Xd    positions(3, n), normals(3, n);
 	for (int i = 0; i < n; ++i) {
-		const double r = std::sqrt(engine() / 4294967296.0), angle = 2.0 * EIGEN_PI * engine() / 4294967296.0;
+		const double r     = std::sqrt(engine() / 4294967296.0),
+					 angle = 2.0 * EIGEN_PI * engine() / 4294967296.0;
 		const Vector3d radial(std::cos(angle), std::sin(angle), 0.0);
 		positions.col(i) = r * radial - r * Vector3d::UnitZ();
 		normals.col(i)   = (radial + Vector3d::UnitZ()).normalized();
@@ -354,10 +363,10 @@ TEST(Creases, TipOfAConeIsNone)
 
 TEST(Creases, AnyOrderOfThePoints)
 {
-	const auto         cube = sampled("cube", 3000);
+	const auto          cube     = sampled("cube", 3000);
 	const PreparedCloud prepared = prepareCloud(cube.positions, cube.normals);
-	PreparedCloud      permuted  = prepared;
-	std::vector<Index> order(prepared.cloud.size());
+	PreparedCloud       permuted = prepared;
+	std::vector<Index>  order(prepared.cloud.size());
 	std::iota(order.begin(), order.end(), 0);
 	std::shuffle(order.begin(), order.end(), std::mt19937(4));
 	for (Index i = 0; i < prepared.cloud.size(); ++i) {
@@ -372,15 +381,16 @@ TEST(Creases, AnyOrderOfThePoints)
 TEST(Creases, RigidMotion)
 {
 	const auto            cube = sampled("cube", 3000);
-	const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-	const Found           found =
-		find((1000.0 * turn * cube.positions).colwise() + Vector3d(5e3, -1e4, 2e3), turn * cube.normals);
+	const Eigen::Matrix3d turn =
+		Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+	const Found found = find(
+		(1000.0 * turn * cube.positions).colwise() + Vector3d(5e3, -1e4, 2e3), turn * cube.normals);
 	expectSound(found);
 	EXPECT_EQ(found.creases.curves.size(), 12u);
 	EXPECT_EQ(found.creases.corners.size(), 8u);
-	Edges edges = cubeEdges();
-	edges.from  = (1000.0 * turn * edges.from).colwise() + Vector3d(5e3, -1e4, 2e3);
-	edges.to    = (1000.0 * turn * edges.to).colwise() + Vector3d(5e3, -1e4, 2e3);
+	Edges edges         = cubeEdges();
+	edges.from          = (1000.0 * turn * edges.from).colwise() + Vector3d(5e3, -1e4, 2e3);
+	edges.to            = (1000.0 * turn * edges.to).colwise() + Vector3d(5e3, -1e4, 2e3);
 	const Errors errors = errorsOf(found, edges, 1000.0 * std::sqrt(3.0));
 	EXPECT_LT(errors.max, 1e-4);
 	EXPECT_LT(errors.gap, 1.0);
@@ -417,15 +427,15 @@ TEST(Creases, SpacingAsAsked)
 
 TEST(Creases, OutliersLeftOver)
 {
-	const auto   cube = sampled("cube", 6000);
-	Matrix3Xd    positions(3, 6100), normals(3, 6100);
+	const auto cube = sampled("cube", 6000);
+	Matrix3Xd  positions(3, 6100), normals(3, 6100);
 	positions.leftCols(6000) = cube.positions;
 	normals.leftCols(6000)   = cube.normals;
 	samples::Random random(1, 9);
 	for (int i = 6000; i < 6100; ++i) {
 		for (int c = 0; c < 3; ++c)
 			positions(c, i) = random.uniform(-0.6, 0.6);
-		normals.col(i)   = random.normal3().normalized();
+		normals.col(i) = random.normal3().normalized();
 	}
 	const Found found = find(positions, normals);
 	expectSound(found);

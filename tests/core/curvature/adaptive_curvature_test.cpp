@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "umbilics.h"
 #include "estimated_field.h"
+#include "umbilics.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -42,7 +42,8 @@ struct Errors {
 
 // Over the points `counts` names, all by default.
 template<class Predicate>
-Errors errorsOf(const EstimatedField& estimated, const samples::SampleCloud& sample, Predicate counts)
+Errors
+errorsOf(const EstimatedField& estimated, const samples::SampleCloud& sample, Predicate counts)
 {
 	Errors errors;
 	double squares = 0.0, points = 0.0;
@@ -57,7 +58,8 @@ Errors errorsOf(const EstimatedField& estimated, const samples::SampleCloud& sam
 			std::acos(std::min(1.0, std::abs(estimated.field.d1.col(i).dot(sample.d1.col(s)))));
 		errors.pull += std::pow(
 			(k1 - k2 - sample.k1[s] + sample.k2[s]) /
-				(estimated.field.error[i] / estimated.prepared.diagonal + 1e-300), 2);
+				(estimated.field.error[i] / estimated.prepared.diagonal + 1e-300),
+			2);
 		points += 1.0;
 	}
 	errors.mean = std::sqrt(errors.mean / squares);
@@ -86,7 +88,8 @@ double medianRadius(const EstimatedField& estimated)
 // What every field promises.
 void expectSound(const CurvatureField& f)
 {
-	for (const Eigen::VectorXd* values : {&f.k1, &f.k2, &f.error, &f.radius, &f.confidence, &f.feature})
+	for (const Eigen::VectorXd* values :
+	     {&f.k1, &f.k2, &f.error, &f.radius, &f.confidence, &f.feature})
 		ASSERT_TRUE(values->allFinite() && values->size() == f.size());
 	ASSERT_TRUE(f.d1.allFinite() && f.d2.allFinite() && f.correctedNormals.allFinite());
 	if (f.size() == 0)
@@ -152,8 +155,8 @@ TEST(AdaptiveCurvature, CylinderAwayFromItsRims)
 	const auto  sample    = samples::generate(request("cylinder", 3000, 0.0025));
 	const auto& surface   = samples::surface("cylinder");
 	const auto  estimated = estimateScan(sample);
-	const auto  inner     = [&](Index s) { return surface.rimDistance(sample.footPoints.col(s)) > 0.2; };
-	const Errors errors   = errorsOf(estimated, sample, inner);
+	const auto inner = [&](Index s) { return surface.rimDistance(sample.footPoints.col(s)) > 0.2; };
+	const Errors errors = errorsOf(estimated, sample, inner);
 	expectSound(estimated.field);
 	EXPECT_LT(errors.mean, 0.04);
 	EXPECT_LT(errors.direction, 0.02);
@@ -208,8 +211,8 @@ TEST(AdaptiveCurvature, WrongNormalsDoNotMatter)
 
 TEST(AdaptiveCurvature, FarOutliersDoNotReachTheInliers)
 {
-	auto dirty        = request("torus", 3000, 0.0025);
-	dirty.farOutliers = 0.05;
+	auto dirty           = request("torus", 3000, 0.0025);
+	dirty.farOutliers    = 0.05;
 	const auto sample    = samples::generate(dirty);
 	const auto estimated = estimateScan(sample);
 	expectSound(estimated.field);
@@ -254,8 +257,8 @@ TEST(AdaptiveCurvature, RegionsGrowWithTheNoise)
 // Directions are tangent to the given normal where it is right, and to the surface where it is not.
 TEST(AdaptiveCurvature, DirectionsAreTangentToTheSurface)
 {
-	const auto      sample  = samples::generate(request("torus", 1500));
-	Matrix3Xd       normals = sample.normals;
+	const auto sample  = samples::generate(request("torus", 1500));
+	Matrix3Xd  normals = sample.normals;
 	for (Eigen::Index i = 0; i < normals.cols(); i += 2)
 		normals.col(i) = (normals.col(i) + 0.3 * sample.d1.col(i)).normalized();
 	const auto            estimated = estimateAdaptiveField(sample.positions, normals);
@@ -263,8 +266,9 @@ TEST(AdaptiveCurvature, DirectionsAreTangentToTheSurface)
 	const Matrix3Xd       tangentTo = surfaceNormals(f);
 	Index                 right     = 0;
 	for (Index i = 0; i < f.size(); ++i) {
-		const Vector3d given = estimated.prepared.cloud.normals.col(i), fitted = f.correctedNormals.col(i);
-		const bool     same  = given.dot(fitted) > std::cos(0.9 * EIGEN_PI / 180.0);
+		const Vector3d given  = estimated.prepared.cloud.normals.col(i),
+					   fitted = f.correctedNormals.col(i);
+		const bool same       = given.dot(fitted) > std::cos(0.9 * EIGEN_PI / 180.0);
 		if (i % 2 == 0 || same) {
 			EXPECT_LT((tangentTo.col(i) - (i % 2 == 0 ? fitted : given)).norm(), 1e-9);
 		}
@@ -320,12 +324,13 @@ TEST_F(AdaptiveInvariance, RigidMotion)
 	const Matrix3Xd moved     = (turn * sample().positions).colwise() + Vector3d(3, -5, 8);
 	const auto      estimated = estimateAdaptiveField(moved, turn * normals());
 	// The unit frame is that of the bounding box, and so is the largest scale considered.
-	const Errors here = errorsOf(base(), sample());
+	const Errors here       = errorsOf(base(), sample());
 	double       difference = 0.0, angle = 0.0;
 	for (Index i = 0; i < base().field.size(); ++i) {
 		difference += std::pow(base().k1(i) + base().k2(i) - estimated.k1(i) - estimated.k2(i), 2);
-		angle += std::acos(std::min(
-			1.0, std::abs((turn * base().field.d1.col(i)).dot(estimated.field.d1.col(i)))));
+		angle += std::acos(
+			std::min(
+				1.0, std::abs((turn * base().field.d1.col(i)).dot(estimated.field.d1.col(i)))));
 	}
 	const double size = (sample().k1 + sample().k2).norm();
 	EXPECT_LT(std::sqrt(difference) / size, 0.5 * here.mean);
@@ -339,7 +344,9 @@ TEST_F(AdaptiveInvariance, FlippedNormals)
 	expectNear(base().field.k1, -flipped.field.k2, 2e-3);
 	expectNear(base().field.k2, -flipped.field.k1, 2e-3);
 	expectNear(base().field.error, flipped.field.error, 5e-3);
-	EXPECT_LT((base().field.correctedNormals + flipped.field.correctedNormals).cwiseAbs().maxCoeff(), 2e-3);
+	EXPECT_LT(
+		(base().field.correctedNormals + flipped.field.correctedNormals).cwiseAbs().maxCoeff(),
+		2e-3);
 }
 
 TEST_F(AdaptiveInvariance, OrderOfPoints)
@@ -403,14 +410,16 @@ TEST(AdaptiveCurvature, DegenerateClouds)
 		cloud.normals.row(2).setConstant(-1.0);
 		expectSoundOn(cloud);
 	}
-	cloud.positions.row(1) = 1e-7 * Eigen::VectorXd::LinSpaced(30, -1.0, 1.0).array().sin().matrix();
-	expectSoundOn(cloud); // almost a line
+	cloud.positions.row(1) =
+		1e-7 * Eigen::VectorXd::LinSpaced(30, -1.0, 1.0).array().sin().matrix();
+	expectSoundOn(cloud);           // almost a line
 	cloud.positions.setZero(3, 60); // duplicates that preparation would have merged
 	cloud.normals.setZero(3, 60);
 	cloud.normals.row(0).setOnes();
 	expectSoundOn(cloud);
 
-	const auto sheet = samples::generate(request("plane", 20)); // coplanar, then with normals in the plane
+	// coplanar, then with normals in the plane
+	const auto sheet = samples::generate(request("plane", 20));
 	cloud            = prepareCloud(sheet.positions, sheet.normals).cloud;
 	expectSoundOn(cloud);
 	cloud.normals.setZero();
@@ -450,7 +459,7 @@ TEST(AdaptiveCurvature, CanBeCancelled)
         EXPECT_GE(fraction, last - 1e-12);
         last = fraction;
         return true;
-	});
+    });
 	estimateCurvature(cloud, search, minimum, {}, watch);
 	EXPECT_DOUBLE_EQ(last, 1.0);
 	const Progress cancel([](double fraction, const char*) { return fraction < 0.4; });

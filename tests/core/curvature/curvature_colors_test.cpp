@@ -21,7 +21,8 @@ Eigen::Vector3d colorOf(double k1, double k2)
 
 TEST(CurvatureColors, ConvexIsRedSaddleGreenConcaveBlue)
 {
-	const Eigen::Vector3d convex = colorOf(20, 20), saddle = colorOf(20, -20), concave = colorOf(-20, -20);
+	const Eigen::Vector3d convex = colorOf(20, 20), saddle = colorOf(20, -20),
+						  concave = colorOf(-20, -20);
 	EXPECT_DOUBLE_EQ(convex[0], 1.0);
 	EXPECT_LT(std::max(convex[1], convex[2]), 1.0);
 	EXPECT_NEAR(convex[1], convex[2], 1e-12);

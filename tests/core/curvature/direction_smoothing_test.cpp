@@ -20,13 +20,13 @@ constexpr double degree = EIGEN_PI / 180.0;
 ExactCloud noisyDirections(const std::string& surface, double degrees, int points = 2000)
 {
 	samples::SampleRequest request;
-	request.surface  = surface;
-	request.points   = points;
-	request.seed     = 5;
+	request.surface       = surface;
+	request.points        = points;
+	request.seed          = 5;
 	ExactCloud      exact = exactCloud(request);
 	samples::Random random(11, 1);
 	for (Index i = 0; i < exact.cloud.size(); ++i) {
-		const double a = degrees * degree * random.normal();
+		const double   a = degrees * degree * random.normal();
 		const Vector3d d1 =
 			std::cos(a) * exact.sample.d1.col(i) + std::sin(a) * exact.sample.d2.col(i);
 		exact.field.d1.col(i) = d1;
@@ -154,7 +154,8 @@ TEST(DirectionSmoothing, StandardErrorDecidesWhoFollows)
 	std::vector<Index> turned;
 	for (Index i = 0; i < exact.cloud.size(); i += 10) {
 		turned.push_back(i);
-		exact.field.d1.col(i) = (exact.sample.d1.col(i) + 0.6 * exact.sample.d2.col(i)).normalized();
+		exact.field.d1.col(i) =
+			(exact.sample.d1.col(i) + 0.6 * exact.sample.d2.col(i)).normalized();
 	}
 	const auto sure = smoothed(exact, 0.5);
 	for (const Index i : turned)
@@ -203,8 +204,8 @@ TEST(DirectionSmoothing, SignsOfTheInputDoNotMatter)
 
 TEST(DirectionSmoothing, FollowsRigidMotionAndOrderOfPoints)
 {
-	const ExactCloud exact = noisyDirections("torus", 8.0, 800);
-	const Index      n     = exact.cloud.size();
+	const ExactCloud      exact = noisyDirections("torus", 8.0, 800);
+	const Index           n     = exact.cloud.size();
 	const Eigen::Matrix3d rotation =
 		Eigen::AngleAxisd(2.1, Vector3d(-1.0, 2.0, 0.5).normalized()).toRotationMatrix();
 	std::vector<Index> order(n), place(n);
@@ -251,8 +252,8 @@ TEST(DirectionSmoothing, NothingCrossesAnEdge)
 	ExactCloud exact = noisyDirections("cube", 0.0, 1500);
 	exact.field.k1.setConstant(1.0);
 	for (Index i = 0; i < exact.cloud.size(); ++i) {
-		const Vector3d n = exact.cloud.normals.col(i);
-		const Vector3d d = std::abs(n.z()) > 0.5 ? Vector3d(1.0, 1.0, 0.0) : Vector3d::UnitZ();
+		const Vector3d n      = exact.cloud.normals.col(i);
+		const Vector3d d      = std::abs(n.z()) > 0.5 ? Vector3d(1.0, 1.0, 0.0) : Vector3d::UnitZ();
 		exact.field.d1.col(i) = d.normalized();
 	}
 	const NeighborSearch            search(exact.cloud.positions);
@@ -268,9 +269,9 @@ TEST(DirectionSmoothing, NothingCrossesAnEdge)
 
 TEST(DirectionSmoothing, PlaneWithoutCurvatureBecomesParallel)
 {
-	const ExactCloud exact  = noisyDirections("plane", 20.0, 800); // no data term at all
-	const auto       result = smoothed(exact, 0.5);
-	const Eigen::Matrix3Xd same = result.d1.col(0).replicate(1, exact.cloud.size());
+	const ExactCloud       exact  = noisyDirections("plane", 20.0, 800); // no data term at all
+	const auto             result = smoothed(exact, 0.5);
+	const Eigen::Matrix3Xd same   = result.d1.col(0).replicate(1, exact.cloud.size());
 	EXPECT_LT(largestAngle(result.d1, same), 3.0 * degree);
 	EXPECT_LT(lineAngle(result.d1.col(0), exact.sample.d1.col(0)), 10.0 * degree);
 }
@@ -300,8 +301,8 @@ TEST(DirectionSmoothing, SurvivesPointsWithoutPartners)
 
 TEST(DirectionSmoothing, CanBeCancelled)
 {
-	const ExactCloud exact = noisyDirections("torus", 10.0, 600);
-	const Progress   cancel([](double fraction, const char*) { return fraction < 0.4; });
+	const ExactCloud          exact = noisyDirections("torus", 10.0, 600);
+	const Progress            cancel([](double fraction, const char*) { return fraction < 0.4; });
 	DirectionSmoothingOptions options;
 	options.alpha = 0.5;
 	EXPECT_THROW(smoothDirections(exact.cloud, exact.field, options, cancel), Cancelled);

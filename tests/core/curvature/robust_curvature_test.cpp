@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "estimated_field.h"
 #include "irls.h"
 #include "operating_region.h"
 #include "robust_kernel.h"
-#include "estimated_field.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -20,8 +20,8 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-samples::SampleCloud sampled(
-	const std::string& surface, int points = 2000, double noise = 0.0, int seed = 1)
+samples::SampleCloud
+sampled(const std::string& surface, int points = 2000, double noise = 0.0, int seed = 1)
 {
 	samples::SampleRequest request;
 	request.surface = surface;
@@ -73,8 +73,8 @@ TEST(Irls, ScaleAndWeightsAreThoseOfTheFormulas)
 		std::vector<double>    residuals, sorted;
 		for (Index s = 0; s < count; ++s)
 			residuals.push_back((fit.model * Vector2d(samples.pu[s], samples.pv[s]) -
-								 Vector3d(samples.nu[s], samples.nv[s], samples.nw[s]))
-									.norm());
+			                     Vector3d(samples.nu[s], samples.nv[s], samples.nw[s]))
+			                        .norm());
 		sorted = residuals;
 		std::sort(sorted.begin(), sorted.end());
 		const double sigma = 1.4826 * 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
@@ -93,7 +93,7 @@ TEST(Irls, IsAFixedPointAndIgnoresGrossErrors)
 {
 	const VariationSamples samples = randomSamples(someModel(), 400, 0.01, 3);
 	IrlsOptions            options;
-	options.tolerance = 1e-12;
+	options.tolerance     = 1e-12;
 	options.maxIterations = 300;
 	IrlsSolver    solver;
 	const IrlsFit fit = solver.fit(samples, VariationModel::Zero(), options);
@@ -101,7 +101,7 @@ TEST(Irls, IsAFixedPointAndIgnoresGrossErrors)
 	EXPECT_LT((weightedLeastSquares(samples, fit.weights) - fit.model).norm(), 1e-5);
 
 	IrlsOptions plain;
-	plain.robust = false;
+	plain.robust          = false;
 	const IrlsFit squares = IrlsSolver().fit(samples, VariationModel::Zero(), plain);
 	EXPECT_EQ(squares.iterations, 1);
 	EXPECT_GT((squares.model - someModel()).norm(), 4.0 * (fit.model - someModel()).norm());
@@ -159,10 +159,12 @@ TEST(OperatingRegion, PairSubsampleIsFixedAndAboutAsLargeAsAsked)
 	EXPECT_EQ(pairs.first, again.first);
 	EXPECT_EQ(pairs.second, again.second);
 	// The weight is the inverse of the mean squared distance, in units of the radius.
-	const double a = (prepared.cloud.positions.col(region.points[7]) -
-					  prepared.cloud.positions.col(5)).squaredNorm();
-	const double b = (prepared.cloud.positions.col(region.points[90]) -
-					  prepared.cloud.positions.col(5)).squaredNorm();
+	const double a =
+		(prepared.cloud.positions.col(region.points[7]) - prepared.cloud.positions.col(5))
+			.squaredNorm();
+	const double b =
+		(prepared.cloud.positions.col(region.points[90]) - prepared.cloud.positions.col(5))
+			.squaredNorm();
 	EXPECT_NEAR(region.geometricWeight(7, 90), region.radius * region.radius * 2.0 / (a + b), 1e-9);
 	EXPECT_EQ(region.squaredDistances[0], 0.0);
 	EXPECT_TRUE(std::isfinite(region.geometricWeight(0, 0)));
@@ -194,9 +196,9 @@ TEST(RobustCurvature, ExactOnSphereCylinderAndPlane)
 
 TEST(RobustCurvature, FramesOrderErrorsAndConfidence)
 {
-	const auto sample    = sampled("ellipsoid", 1500, 0.003);
-	const auto estimated = estimateField(sample.positions, planeFitNormals(sample, 25));
-	const auto& f        = estimated.field;
+	const auto      sample     = sampled("ellipsoid", 1500, 0.003);
+	const auto      estimated  = estimateField(sample.positions, planeFitNormals(sample, 25));
+	const auto&     f          = estimated.field;
 	Eigen::VectorXd confidence = Eigen::VectorXd::Zero(f.size());
 	for (Index i = 0; i < f.size(); ++i) {
 		EXPECT_GE(f.k1[i], f.k2[i]);
@@ -289,7 +291,7 @@ Edge edge(double noise)
 	e.trueNormals.resize(3, n);
 	for (int i = 0; i < n; ++i) {
 		const double y = random.uniform(-0.5, 0.5), t = random.uniform(0.0, 0.5);
-		const bool   top = i % 2 == 0;
+		const bool   top     = i % 2 == 0;
 		e.positions.col(i)   = top ? Vector3d(-t, y, 0) : Vector3d(0, y, -t);
 		e.trueNormals.col(i) = top ? Vector3d::UnitZ() : Vector3d::UnitX();
 		e.normals.col(i)     = (e.trueNormals.col(i) + noise * random.normal3()).normalized();
@@ -311,7 +313,7 @@ EdgeOutcome besideTheEdge(const Edge& e, const RobustCurvatureOptions& options =
 	for (Index i = 0; i < f.size(); ++i) {
 		const Vector3d p = e.positions.col(i), n = e.trueNormals.col(i);
 		if (std::abs(p.y()) > 0.4 ||
-			std::max(-p.x(), -p.z()) > f.radius[i] * estimated.prepared.diagonal)
+		    std::max(-p.x(), -p.z()) > f.radius[i] * estimated.prepared.diagonal)
 			continue;
 		for (const Index j : f.weights.neighbors[i]) {
 			all += f.weights(i, j);
@@ -355,7 +357,7 @@ TEST(FeatureGate, CostsNothingOnASmoothSurface)
 	const Matrix3Xd        normals = planeFitNormals(sample, 25);
 	RobustCurvatureOptions published;
 	published.featureGate = false;
-	const auto gated = curvatureErrors(estimateField(sample.positions, normals), sample);
+	const auto gated      = curvatureErrors(estimateField(sample.positions, normals), sample);
 	const auto paper = curvatureErrors(estimateField(sample.positions, normals, published), sample);
 	EXPECT_LE(gated.k1, 1.08 * paper.k1);
 	EXPECT_LE(gated.k2, 1.08 * paper.k2);
@@ -363,7 +365,7 @@ TEST(FeatureGate, CostsNothingOnASmoothSurface)
 
 class Invariance : public ::testing::Test {
 protected:
-	samples::SampleCloud sample = sampled("torus", 700, 0.004);
+	samples::SampleCloud sample  = sampled("torus", 700, 0.004);
 	Matrix3Xd            normals = planeFitNormals(sample, 20);
 	EstimatedField       base    = estimateField(sample.positions, normals);
 	// Rounding moves residuals across cuts; what is left is a small share of the points.
@@ -378,7 +380,7 @@ protected:
 
 TEST_F(Invariance, Scaling)
 {
-	const auto scaled = estimateField(1000.0 * sample.positions, normals);
+	const auto      scaled = estimateField(1000.0 * sample.positions, normals);
 	Eigen::VectorXd k1(base.field.size()), k2(base.field.size());
 	for (Index i = 0; i < base.field.size(); ++i) {
 		k1[i] = 1000.0 * scaled.k1(i) * base.prepared.diagonal;
@@ -392,9 +394,9 @@ TEST_F(Invariance, RigidMotion)
 {
 	const Eigen::Matrix3d turn =
 		Eigen::AngleAxisd(1.1, Vector3d(0.4, -0.8, 0.3).normalized()).toRotationMatrix();
-	const Matrix3Xd moved      = (turn * sample.positions).colwise() + Vector3d(3, -5, 8);
-	const auto      estimated  = estimateField(moved, turn * normals);
-	const double    scale      = base.prepared.diagonal / estimated.prepared.diagonal;
+	const Matrix3Xd moved     = (turn * sample.positions).colwise() + Vector3d(3, -5, 8);
+	const auto      estimated = estimateField(moved, turn * normals);
+	const double    scale     = base.prepared.diagonal / estimated.prepared.diagonal;
 	expectEqual(base.field.k1, scale * estimated.field.k1, 1e-3);
 	expectEqual(base.field.k2, scale * estimated.field.k2, 1e-3);
 	Index off = 0;
@@ -477,14 +479,16 @@ TEST(RobustCurvature, DegenerateCloudsGiveFiniteFrames)
 		cloud.normals.row(2).setConstant(-1.0);
 		expectSound(cloud);
 	}
-	cloud.positions.row(1) = 1e-7 * Eigen::VectorXd::LinSpaced(30, -1.0, 1.0).array().sin().matrix();
-	expectSound(cloud); // almost a line
+	cloud.positions.row(1) =
+		1e-7 * Eigen::VectorXd::LinSpaced(30, -1.0, 1.0).array().sin().matrix();
+	expectSound(cloud);             // almost a line
 	cloud.positions.setZero(3, 60); // duplicates that preparation would have merged
 	cloud.normals.setZero(3, 60);
 	cloud.normals.row(0).setOnes();
 	expectSound(cloud);
 
-	const auto sheet = sampled("plane", 20); // twenty coplanar points, then with normals in the plane
+	// twenty coplanar points, then with normals in the plane
+	const auto sheet = sampled("plane", 20);
 	cloud            = prepareCloud(sheet.positions, sheet.normals).cloud;
 	expectSound(cloud);
 	cloud.normals.setZero();

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "surface_projection.h"
 #include "exact_field.h"
+#include "surface_projection.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -75,7 +75,7 @@ void expectFiniteFrame(const SurfaceSample& s)
 TEST(SurfaceProjection, MixedProjectionLiesOnTheTorus)
 {
 	const ExactCloud exact = cleanCloud("torus");
-	const Errors     e = errorsOf(exact, samples::surface("torus"), ProjectionKind::Mixed);
+	const Errors     e     = errorsOf(exact, samples::surface("torus"), ProjectionKind::Mixed);
 	EXPECT_LT(e.distance, 0.0015);
 	EXPECT_LT(e.normal, 0.02);
 	EXPECT_LT(e.direction, 0.025);
@@ -102,9 +102,10 @@ TEST(SurfaceProjection, MixedProjectionBeatsTheAverages)
 
 TEST(SurfaceProjection, BiasFallsWithTheSquareOfTheSpacing)
 {
-	const auto&  torus  = samples::surface("torus");
-	const double coarse = errorsOf(cleanCloud("torus", 1500), torus, ProjectionKind::Mixed).distance;
-	const double fine   = errorsOf(cleanCloud("torus", 6000), torus, ProjectionKind::Mixed).distance;
+	const auto&  torus = samples::surface("torus");
+	const double coarse =
+		errorsOf(cleanCloud("torus", 1500), torus, ProjectionKind::Mixed).distance;
+	const double fine = errorsOf(cleanCloud("torus", 6000), torus, ProjectionKind::Mixed).distance;
 	EXPECT_GT(std::log2(coarse / fine), 1.8); // four times the points halve the spacing
 }
 
@@ -129,10 +130,10 @@ TEST(SurfaceProjection, ContinuousAcrossCells)
 	const ExactCloud     exact = cleanCloud("torus");
 	const auto&          torus = samples::surface("torus");
 	const NeighborSearch search(exact.cloud.positions);
-	const double         h    = exact.minimum.medianSpacing;
+	const double         h     = exact.minimum.medianSpacing;
 	const int            steps = 20000;
 	SurfaceSample        previous;
-	Index                cells = 0;
+	Index                cells       = 0;
 	double               largestStep = 0.0, largestTurn = 0.0, largestChange = 0.0;
 	for (int i = 0; i <= steps; ++i) {
 		const double   a = 2.0 * EIGEN_PI * i / steps;
@@ -156,23 +157,23 @@ TEST(SurfaceProjection, ContinuousAcrossCells)
 
 TEST(SurfaceProjection, FollowsRigidMotionAndScale)
 {
-	const ExactCloud exact = cleanCloud("ellipsoid", 800);
-	const double     scale = 3.0;
+	const ExactCloud      exact = cleanCloud("ellipsoid", 800);
+	const double          scale = 3.0;
 	const Eigen::Matrix3d rotation =
 		Eigen::AngleAxisd(1.1, Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
 	const Vector3d shift(0.3, -0.2, 0.7);
-	ExactCloud     moved   = exact;
-	moved.cloud.positions  = (scale * rotation * exact.cloud.positions).colwise() + shift;
-	moved.cloud.normals    = rotation * exact.cloud.normals;
-	moved.field.d1         = rotation * exact.field.d1;
-	moved.field.d2         = rotation * exact.field.d2;
+	ExactCloud     moved  = exact;
+	moved.cloud.positions = (scale * rotation * exact.cloud.positions).colwise() + shift;
+	moved.cloud.normals   = rotation * exact.cloud.normals;
+	moved.field.d1        = rotation * exact.field.d1;
+	moved.field.d2        = rotation * exact.field.d2;
 	moved.field.k1 /= scale;
 	moved.field.k2 /= scale;
 	for (const ProjectionKind kind : allKinds)
 		for (Index i = 0; i < exact.cloud.size(); i += 37) {
-			const Vector3d query  = exact.cloud.positions.col(i) + 0.01 * Vector3d::Ones();
-			const Vector3d query2 = scale * rotation * query + shift;
-			const SurfaceSample a = projectToSurface(exact.cloud, exact.field, query, i, kind);
+			const Vector3d      query  = exact.cloud.positions.col(i) + 0.01 * Vector3d::Ones();
+			const Vector3d      query2 = scale * rotation * query + shift;
+			const SurfaceSample a      = projectToSurface(exact.cloud, exact.field, query, i, kind);
 			const SurfaceSample b = projectToSurface(moved.cloud, moved.field, query2, i, kind);
 			EXPECT_NEAR((scale * rotation * a.position + shift - b.position).norm(), 0.0, 1e-12);
 			EXPECT_NEAR((rotation * a.normal - b.normal).norm(), 0.0, 1e-12);
@@ -204,9 +205,9 @@ TEST(SurfaceProjection, SignsOfDirectionsDoNotMatter)
 TEST(SurfaceProjection, OppositeSheetTakesNoPart)
 {
 	// A plate thinner than the spacing, with weights that (wrongly) reach through it.
-	ExactCloud exact = cleanCloud("plane", 800);
-	const Index n    = exact.cloud.size();
-	PointCloud plate;
+	ExactCloud  exact = cleanCloud("plane", 800);
+	const Index n     = exact.cloud.size();
+	PointCloud  plate;
 	plate.positions.resize(3, 2 * n);
 	plate.normals.resize(3, 2 * n);
 	plate.positions << exact.cloud.positions, exact.cloud.positions;
@@ -217,9 +218,9 @@ TEST(SurfaceProjection, OppositeSheetTakesNoPart)
 	truth.d1.resize(3, 2 * n);
 	truth.d1 << exact.field.d1, exact.field.d1;
 	truth.d2 = truth.d1;
-	const NeighborSearch       search(plate.positions);
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(plate, search);
-	CurvatureField             field   = exactField(truth, plate, search, minimum);
+	const NeighborSearch            search(plate.positions);
+	const MinimumNeighborhoods      minimum = minimumNeighborhoods(plate, search);
+	CurvatureField                  field   = exactField(truth, plate, search, minimum);
 	std::vector<std::vector<Index>> rows(2 * n);
 	for (Index i = 0; i < 2 * n; ++i) {
 		rows[i] = search.within(plate.positions.col(i), field.radius[i]);
@@ -236,8 +237,8 @@ TEST(SurfaceProjection, OppositeSheetTakesNoPart)
 
 TEST(SurfaceProjection, EmptySupportFallsBackToTheTangentPlane)
 {
-	ExactCloud exact        = cleanCloud("sphere", 200);
-	exact.field.weights     = {};
+	ExactCloud exact    = cleanCloud("sphere", 200);
+	exact.field.weights = {};
 	exact.field.weights.neighbors.offsets.assign(exact.cloud.size() + 1, 0);
 	exact.field.status.assign(exact.cloud.size(), PointStatus::TooFewNeighbors);
 	for (const ProjectionKind kind : allKinds) {
@@ -256,8 +257,12 @@ TEST(SurfaceProjection, AlwaysFinite)
 	const double     huge  = std::numeric_limits<double>::max();
 	for (const ProjectionKind kind : allKinds)
 		for (const Vector3d& query :
-			 {Vector3d(nan, 0.0, 0.0), Vector3d(huge, -huge, huge), Vector3d(1e8, 1e8, 1e8),
-			  Vector3d(0.0, 0.0, 0.0), Vector3d(exact.cloud.positions.col(9)), Vector3d(5.0, -7.0, 3.0)})
+		     {Vector3d(nan, 0.0, 0.0),
+		      Vector3d(huge, -huge, huge),
+		      Vector3d(1e8, 1e8, 1e8),
+		      Vector3d(0.0, 0.0, 0.0),
+		      Vector3d(exact.cloud.positions.col(9)),
+		      Vector3d(5.0, -7.0, 3.0)})
 			expectFiniteFrame(projectToSurface(exact.cloud, exact.field, query, 9, kind));
 }
 

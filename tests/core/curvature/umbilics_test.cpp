@@ -7,8 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include "umbilics.h"
 #include "exact_field.h"
+#include "umbilics.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -74,7 +74,8 @@ TEST(Umbilics, NoneOnTorusHelicoidAndCylinder)
 
 TEST(Umbilics, FewOnAnEllipsoid)
 {
-	EXPECT_LT(count(umbilicsOf(cleanCloud("ellipsoid")).umbilic), 20); // four isolated ones in truth
+	// four isolated ones in truth
+	EXPECT_LT(count(umbilicsOf(cleanCloud("ellipsoid")).umbilic), 20);
 }
 
 TEST(Umbilics, CubeFacesAreSixRegionsWithParallelDirectionsAlongTheEdges)
@@ -167,7 +168,8 @@ TEST(Umbilics, SmoothedDirectionsLeadThroughRegionsOfDoubt)
 	ExactCloud exact = cleanCloud("helicoid");
 	exact.field.error.setZero();
 	for (Index i = 0; i < exact.cloud.size(); ++i)
-		if (exact.cloud.positions.col(i).head<2>().norm() > 0.7 && exact.cloud.positions(2, i) > 0.5)
+		if (exact.cloud.positions.col(i).head<2>().norm() > 0.7 &&
+		    exact.cloud.positions(2, i) > 0.5)
 			exact.field.error[i] = 10.0; // at the rim
 	const Index doubtful = count(umbilicsOf(exact).umbilic);
 	EXPECT_GT(doubtful, 100);
@@ -180,7 +182,8 @@ TEST(Umbilics, SmoothedDirectionsLeadThroughRegionsOfDoubt)
 	for (const char* name : {"ellipsoid", "capsule", "sphere", "cube"}) {
 		ExactCloud umbilical = cleanCloud(name, 4000);
 		if (name == std::string("ellipsoid"))
-			umbilical.field.error = 0.3 * (umbilical.field.k1 - umbilical.field.k2).mean() * Eigen::VectorXd::Ones(umbilical.cloud.size());
+			umbilical.field.error = 0.3 * (umbilical.field.k1 - umbilical.field.k2).mean() *
+			                        Eigen::VectorXd::Ones(umbilical.cloud.size());
 		const UmbilicRegions all = umbilicsOf(umbilical), left = umbilicsOf(umbilical, smoothed);
 		EXPECT_GT(all.regions, 0) << name;
 		EXPECT_EQ(left.region, all.region) << name;
@@ -190,11 +193,11 @@ TEST(Umbilics, SmoothedDirectionsLeadThroughRegionsOfDoubt)
 
 TEST(Umbilics, SinglePointsAreFiltered)
 {
-	ExactCloud exact      = cleanCloud("torus");
-	exact.field.k2[100]   = exact.field.k1[100];
+	ExactCloud exact    = cleanCloud("torus");
+	exact.field.k2[100] = exact.field.k1[100];
 	EXPECT_EQ(count(umbilicsOf(exact).umbilic), 0);
-	ExactCloud sphere     = cleanCloud("sphere");
-	sphere.field.k2[100]  = -sphere.field.k1[100];
+	ExactCloud sphere    = cleanCloud("sphere");
+	sphere.field.k2[100] = -sphere.field.k1[100];
 	EXPECT_EQ(count(umbilicsOf(sphere).umbilic), sphere.cloud.size());
 }
 
@@ -212,8 +215,8 @@ TEST(Umbilics, SmallRegionsKeepTheirDirections)
 
 TEST(Umbilics, FollowRigidMotionScaleAndFlippedNormals)
 {
-	const ExactCloud     exact = cleanCloud("capsule", 1000);
-	const UmbilicRegions a     = umbilicsOf(exact);
+	const ExactCloud      exact = cleanCloud("capsule", 1000);
+	const UmbilicRegions  a     = umbilicsOf(exact);
 	const Eigen::Matrix3d rotation =
 		Eigen::AngleAxisd(0.7, Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
 	ExactCloud moved      = exact;
@@ -245,9 +248,9 @@ TEST(Umbilics, SurviveDegenerateClouds)
 	exact.cloud.normals = Vector3d::UnitZ().replicate(1, 20);
 	exact.minimum       = minimumNeighborhoods(exact.cloud, NeighborSearch(exact.cloud.positions));
 	exact.field.k1 = exact.field.k2 = exact.field.error = Eigen::VectorXd::Zero(20);
-	exact.field.d1 = Vector3d::UnitX().replicate(1, 20);
-	exact.field.d2 = Vector3d::UnitY().replicate(1, 20);
-	const UmbilicRegions u = umbilicsOf(exact);
+	exact.field.d1                                      = Vector3d::UnitX().replicate(1, 20);
+	exact.field.d2                                      = Vector3d::UnitY().replicate(1, 20);
+	const UmbilicRegions u                              = umbilicsOf(exact);
 	EXPECT_EQ(count(u.umbilic), 20);
 	expectFrames(exact, u);
 }

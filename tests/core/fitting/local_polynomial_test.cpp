@@ -5,8 +5,8 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-#include "local_polynomial.h"
 #include "analytic_surfaces.h"
+#include "local_polynomial.h"
 
 namespace curvature_lines {
 namespace {
@@ -22,7 +22,8 @@ LocalSamples<Values> randomSamples(int count, int seed)
 		Eigen::Matrix<double, Values, 1> value;
 		for (int c = 0; c < Values; ++c)
 			value[c] = random.normal();
-		const double angle = random.uniform(0.0, 2.0 * EIGEN_PI), radius = std::sqrt(random.uniform());
+		const double angle  = random.uniform(0.0, 2.0 * EIGEN_PI),
+					 radius = std::sqrt(random.uniform());
 		const double weight = s % 7 == 3 ? 0.0 : random.uniform(0.05, 1.0);
 		samples.add(radius * std::cos(angle), radius * std::sin(angle), weight, value);
 	}
@@ -40,17 +41,23 @@ void expectAgreesWithQr(int count, int seed)
 		int          m    = 0;
 		for (int degree = 0; degree <= Degree; ++degree)
 			for (int b = 0; b <= degree; ++b)
-				design(s, m++) = root * std::pow(samples.x[s], degree - b) * std::pow(samples.y[s], b);
+				design(s, m++) =
+					root * std::pow(samples.x[s], degree - b) * std::pow(samples.y[s], b);
 		for (int c = 0; c < Values; ++c)
 			values(s, c) = root * samples.value[c][s];
 	}
 	const Eigen::MatrixXd expected = design.colPivHouseholderQr().solve(values);
 	const auto            fit      = fitPolynomial<Degree, Values>(samples);
 	ASSERT_TRUE(fit.valid) << Degree << " " << count;
-	EXPECT_LT((fit.coefficients - expected).norm(), 1e-6 * (1.0 + expected.norm())) << Degree << " " << count;
-	EXPECT_NEAR(fit.squaredResidual, (values - design * expected).squaredNorm(), 1e-6 * values.squaredNorm());
+	EXPECT_LT((fit.coefficients - expected).norm(), 1e-6 * (1.0 + expected.norm()))
+		<< Degree << " " << count;
+	EXPECT_NEAR(
+		fit.squaredResidual,
+		(values - design * expected).squaredNorm(),
+		1e-6 * values.squaredNorm());
 	EXPECT_LT((fit.gram - design.transpose() * design).norm(), 1e-12 * fit.gram.norm());
-	EXPECT_NEAR(fit.sumOfWeights, (design.col(0).array() * design.col(0).array()).sum(), 1e-12 * count);
+	EXPECT_NEAR(
+		fit.sumOfWeights, (design.col(0).array() * design.col(0).array()).sum(), 1e-12 * count);
 }
 
 TEST(LocalPolynomial, AgreesWithQrOfTheDesignMatrix)
@@ -68,7 +75,8 @@ TEST(LocalPolynomial, ReproducesPolynomialsOfItsDegree)
 {
 	LocalSamples<1> samples = randomSamples<1>(50, 1);
 	const auto      height  = [](double x, double y) {
-        return 0.3 - 0.2 * x + y + 0.5 * x * x - x * y + 2.0 * y * y + x * x * x - 0.7 * x * y * y * y;
+        return 0.3 - 0.2 * x + y + 0.5 * x * x - x * y + 2.0 * y * y + x * x * x -
+               0.7 * x * y * y * y;
 	};
 	for (int s = 0; s < samples.size(); ++s)
 		samples.value[0][s] = height(samples.x[s], samples.y[s]);
@@ -88,7 +96,11 @@ TEST(LocalPolynomial, PaddingOfAnEarlierAndLargerSetDoesNotCount)
 	LocalSamples<1> reused = randomSamples<1>(200, 2), fresh = randomSamples<1>(30, 3);
 	reused.reserve(30);
 	for (int s = 0; s < 30; ++s)
-		reused.add(fresh.x[s], fresh.y[s], fresh.weight[s], Eigen::Matrix<double, 1, 1>(fresh.value[0][s]));
+		reused.add(
+			fresh.x[s],
+			fresh.y[s],
+			fresh.weight[s],
+			Eigen::Matrix<double, 1, 1>(fresh.value[0][s]));
 	const auto a = fitPolynomial<2, 1>(reused), b = fitPolynomial<2, 1>(fresh);
 	EXPECT_EQ(a.coefficients, b.coefficients);
 	EXPECT_EQ(a.squaredResidual, b.squaredResidual);

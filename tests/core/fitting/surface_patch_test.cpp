@@ -30,10 +30,10 @@ double paraboloid(double x, double y)
 
 TEST(SurfacePatch, FindsAQuadricAndItsNormals)
 {
-	const double        radius = 0.4;
-	SurfacePatch        patch(Vector3d(1.0, 2.0, 3.0), Vector3d(1.0, 1.0, 0.5).normalized(), radius);
-	LocalSamples<1>     samples;
-	Random              random(1, 0);
+	const double    radius = 0.4;
+	SurfacePatch    patch(Vector3d(1.0, 2.0, 3.0), Vector3d(1.0, 1.0, 0.5).normalized(), radius);
+	LocalSamples<1> samples;
+	Random          random(1, 0);
 	samples.reserve(40);
 	for (int k = 0; k < 40; ++k) {
 		const double x = random.uniform(-0.7, 0.7), y = random.uniform(-0.7, 0.7);
@@ -43,13 +43,13 @@ TEST(SurfacePatch, FindsAQuadricAndItsNormals)
 	EXPECT_NEAR(patch.scale, 0.0, 1e-7);
 	const auto at = [&](double x, double y) -> Vector3d {
 		return patch.origin + radius * patch.frame.toSpace(Eigen::Vector2d(x, y)) +
-			   paraboloid(x, y) * patch.frame.n;
+		       paraboloid(x, y) * patch.frame.n;
 	};
-	const double          x = 0.3, y = -0.2, h = 1e-5;
-	const Vector3d        p = at(x, y);
-	const Vector3d        du = (at(x + h, y) - at(x - h, y)), dv = (at(x, y + h) - at(x, y - h));
-	const Vector3d        normal = du.cross(dv).normalized();
-	SurfacePatch::Local   local  = patch.toLocal(p);
+	const double        x = 0.3, y = -0.2, h = 1e-5;
+	const Vector3d      p  = at(x, y);
+	const Vector3d      du = (at(x + h, y) - at(x - h, y)), dv = (at(x, y + h) - at(x, y - h));
+	const Vector3d      normal = du.cross(dv).normalized();
+	SurfacePatch::Local local  = patch.toLocal(p);
 	EXPECT_NEAR(patch.residual(local), 0.0, 1e-9);
 	EXPECT_LT((patch.normal(x, y) - normal).norm(), 1e-6);
 	// Off the surface along the normal, the residual is the distance to first order.
@@ -79,15 +79,15 @@ TEST(SurfacePatch, LeverageScaleAndCountByDenseMatrices)
 	ASSERT_TRUE(fitPatch(patch, samples));
 	patchResiduals(patch, samples, residuals);
 	const MatrixXd inverse = (phi.transpose() * w.asDiagonal() * phi).inverse();
-	const MatrixXd lost = inverse * phi.transpose() * w.cwiseProduct(w).asDiagonal() * phi;
+	const MatrixXd lost    = inverse * phi.transpose() * w.cwiseProduct(w).asDiagonal() * phi;
 	double         squares = 0.0;
 	for (int k = 0; k < n; ++k) {
 		EXPECT_NEAR(
-			patch.leverage(phi(k, 1), phi(k, 2)), phi.row(k).dot(inverse * phi.row(k).transpose()), 1e-7);
+			patch.leverage(phi(k, 1), phi(k, 2)),
+			phi.row(k).dot(inverse * phi.row(k).transpose()),
+			1e-7);
 		EXPECT_NEAR(
-			residuals[k],
-			patch.residual({samples.x[k], samples.y[k], samples.value[0][k]}),
-			1e-14);
+			residuals[k], patch.residual({samples.x[k], samples.y[k], samples.value[0][k]}), 1e-14);
 		squares += w[k] * residuals[k] * residuals[k];
 	}
 	EXPECT_NEAR(patch.scale, std::sqrt(squares / (w.sum() - lost.trace())), 1e-8);
@@ -96,8 +96,8 @@ TEST(SurfacePatch, LeverageScaleAndCountByDenseMatrices)
 
 TEST(SurfacePatch, TooFewOrCollinearSamplesAreInvalidOrFinite)
 {
-	SurfacePatch        patch(Vector3d::Zero(), Vector3d::UnitZ(), 1.0);
-	LocalSamples<1>     samples;
+	SurfacePatch    patch(Vector3d::Zero(), Vector3d::UnitZ(), 1.0);
+	LocalSamples<1> samples;
 	samples.reserve(20);
 	for (int k = 0; k < 5; ++k)
 		samples.add(0.1 * k, 0.01 * k * k, 1.0, value(0.0));
@@ -148,7 +148,7 @@ TEST(RobustPatch, NoiseAndScale)
 {
 	SurfacePatch       patch;
 	RobustPatchScratch scratch;
-	const Matrix3Xd    points = mixture(150, 1.0, 0.01, [](const Vector3d& p, Random&) { return p; });
+	const Matrix3Xd points = mixture(150, 1.0, 0.01, [](const Vector3d& p, Random&) { return p; });
 	ASSERT_TRUE(fitPatchRobustly(patch, points, 1.0, 1e-6, 1, scratch));
 	EXPECT_NEAR(patch.scale, 0.0095, 0.002);
 	EXPECT_LT(largestError(patch), 0.01);
@@ -171,8 +171,9 @@ TEST(RobustPatch, OneOfTwoSheetsNotTheMiddle)
 {
 	SurfacePatch       patch;
 	RobustPatchScratch scratch;
-	const Matrix3Xd    points = mixture(
-        150, 0.6, 0.003, [](const Vector3d& p, Random&) { return Vector3d(p - Vector3d(0, 0, 0.3)); });
+	const Matrix3Xd    points = mixture(150, 0.6, 0.003, [](const Vector3d& p, Random&) {
+        return Vector3d(p - Vector3d(0, 0, 0.3));
+    });
 	ASSERT_TRUE(fitPatchRobustly(patch, points, 1.0, 1e-6, 1, scratch));
 	EXPECT_LT(largestError(patch), 0.005);
 	EXPECT_LT(patch.scale, 0.005);

@@ -212,10 +212,10 @@ TEST(LineIntersections, TouchesAndCurlsAreNoCrossings)
 	const PointCloud   cloud = planeCloud(400, 1); // spacing about 0.04
 	const VoronoiCells cells(cloud.positions);
 	const auto         bump = [](double height) {
-		return [height](double t) {
-			return Vector3d(
-				t, 0.5 + height * (std::exp(-std::pow((t - 0.5) / 0.05, 2)) - 0.5), 0.0);
-		};
+        return [height](double t) {
+            return Vector3d(
+                t, 0.5 + height * (std::exp(-std::pow((t - 0.5) / 0.05, 2)) - 0.5), 0.0);
+        };
 	};
 	const auto crossingsWith = [&](const NetworkBuilder::Curve& curve) {
 		NetworkBuilder builder(planeNormal());
@@ -246,11 +246,11 @@ TEST(LineIntersections, SheetsBackToBackDoNotMeet)
 	const VoronoiCells cells(cloud.positions);
 	const double       gap    = 0.01; // a quarter of the spacing, well inside a strip
 	const auto         facing = [&](double sign) {
-		NetworkBuilder builder(
-			[&](const Vector3d& p) { return Vector3d(0, 0, p.z() > 0.0 ? 1.0 : sign); });
-		builder.addSegment(1, {0.1, 0.5, gap}, {0.9, 0.5, gap}, 40);
-		builder.addSegment(2, {0.5, 0.1, 0}, {0.5, 0.9, 0}, 40);
-		return intersectLines(cells, builder.lines()).crossings.size();
+        NetworkBuilder builder(
+            [&](const Vector3d& p) { return Vector3d(0, 0, p.z() > 0.0 ? 1.0 : sign); });
+        builder.addSegment(1, {0.1, 0.5, gap}, {0.9, 0.5, gap}, 40);
+        builder.addSegment(2, {0.5, 0.1, 0}, {0.5, 0.9, 0}, 40);
+        return intersectLines(cells, builder.lines()).crossings.size();
 	};
 	EXPECT_EQ(facing(1.0), 1u);
 	EXPECT_EQ(facing(-1.0), 0u);

@@ -13,10 +13,10 @@ using Eigen::Vector3d;
 
 class LineRegistryTest : public testing::Test {
 protected:
-	test::ExactCloud exact = test::exactCloud({"torus", 1500});
-	double           h     = exact.minimum.medianSpacing;
+	test::ExactCloud exact     = test::exactCloud({"torus", 1500});
+	double           h         = exact.minimum.medianSpacing;
 	NeighborLists    proximity = proximityGraph(exact.minimum);
-	LineRegistry     registry {exact.cloud, exact.minimum, proximity};
+	LineRegistry     registry{exact.cloud, exact.minimum, proximity};
 
 	// A straight piece of half a spacing along d1 or d2, starting at a cloud point.
 	FlowSegment segmentAt(Index i, int family, Index line, double arc) const
@@ -113,15 +113,16 @@ TEST_F(LineRegistryTest, TruncateTakesBack)
 
 TEST_F(LineRegistryTest, CountsEachCrossingOnce)
 {
-	LineRegistry other {exact.cloud, exact.minimum, proximity};
+	LineRegistry other{exact.cloud, exact.minimum, proximity};
 	// Two segments through the middle between two points: both registered with the same two cells.
 	for (Index i = 0; i < exact.cloud.size(); i += 151) {
-		const FlowSegment along = segmentAt(i, 1, 0, 0.0);
+		const FlowSegment along  = segmentAt(i, 1, 0, 0.0);
 		const Vector3d    middle = 0.5 * (along.from + along.to);
 		const Vector3d    across = 0.2 * h * exact.field.d2.col(i);
 		const Index       before = registry.countCrossings(other, exact.cloud.normals);
 		registry.add(along);
-		other.add({middle - across, middle + across, along.normal, along.fromCell, along.toCell, 1, 0.0});
+		other.add(
+			{middle - across, middle + across, along.normal, along.fromCell, along.toCell, 1, 0.0});
 		EXPECT_EQ(registry.countCrossings(other, exact.cloud.normals), before + 1);
 	}
 }

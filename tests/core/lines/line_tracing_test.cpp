@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "line_intersections.h"
 #include "exact_field.h"
+#include "line_intersections.h"
 
 namespace curvature_lines {
 namespace {
@@ -98,8 +98,10 @@ std::vector<double> directionErrors(const LineNetwork& lines, const AnalyticSurf
 	forEachSegment(lines, [&](Index l, Index a, Index b) {
 		const Vector3d middle = 0.5 * (lines.vertices.col(a) + lines.vertices.col(b));
 		const auto     frame  = surface.frame(surface.project(middle));
-		errors.push_back(test::lineAngle(
-			lines.vertices.col(b) - lines.vertices.col(a), lines.family[l] == 1 ? frame.d1 : frame.d2));
+		errors.push_back(
+			test::lineAngle(
+				lines.vertices.col(b) - lines.vertices.col(a),
+				lines.family[l] == 1 ? frame.d1 : frame.d2));
 	});
 	std::sort(errors.begin(), errors.end());
 	return errors;
@@ -139,7 +141,8 @@ void expectSane(const LineNetwork& lines)
 	EXPECT_EQ(lines.offsets.back(), lines.vertices.cols());
 	EXPECT_EQ(lines.normals.cols(), lines.vertices.cols());
 	EXPECT_EQ(lines.curvature.size(), lines.vertices.cols());
-	EXPECT_TRUE(lines.vertices.allFinite() && lines.normals.allFinite() && lines.curvature.allFinite());
+	EXPECT_TRUE(
+		lines.vertices.allFinite() && lines.normals.allFinite() && lines.curvature.allFinite());
 	for (Index l = 0; l < lines.lines(); ++l) {
 		EXPECT_GE(lines.offsets[l + 1] - lines.offsets[l], 2);
 		EXPECT_TRUE(lines.family[l] == 1 || lines.family[l] == 2);
@@ -191,10 +194,10 @@ TEST(LineTracing, ClosesTheCirclesOfTheTorus)
 {
 	const test::ExactCloud exact = test::exactCloud(request("torus", 3000));
 	LineTracingOptions     options;
-	options.stopFactor              = meshStopFactor;
-	options.gradation               = meshGradation;
-	const LineNetwork lines         = trace(exact, options);
-	double            closed[2]     = {0, 0}, all[2] = {0, 0};
+	options.stopFactor                  = meshStopFactor;
+	options.gradation                   = meshGradation;
+	const LineNetwork         lines     = trace(exact, options);
+	double                    closed[2] = {0, 0}, all[2] = {0, 0};
 	const std::vector<double> length = lengths(lines);
 	for (Index l = 0; l < lines.lines(); ++l) {
 		all[lines.family[l] - 1] += length[l];
@@ -227,7 +230,7 @@ TEST(LineTracing, KeepsItsDistance)
 		LineTracingOptions options;
 		options.stopFactor = stop;
 		options.minSpacing = options.maxSpacing = 5.0 * exact.minimum.medianSpacing;
-		const LineNetwork lines = trace(exact, options);
+		const LineNetwork lines                 = trace(exact, options);
 		EXPECT_GT(lines.lines(), 10);
 		for (const double d : distancesToEarlierLines(lines))
 			EXPECT_GE(d, stop * options.minSpacing);
@@ -240,7 +243,7 @@ TEST(LineTracing, ClosingALineDoesNotPushItIntoAnother)
 	disturb(exact, 4.0 * degree);
 	LineTracingOptions options;
 	options.minSpacing = options.maxSpacing = 5.0 * exact.minimum.medianSpacing;
-	const LineNetwork lines = trace(exact, options);
+	const LineNetwork lines                 = trace(exact, options);
 	EXPECT_GT(std::accumulate(lines.closed.begin(), lines.closed.end(), 0), 2);
 	std::vector<double> d = distancesToEarlierLines(lines);
 	std::sort(d.begin(), d.end());
@@ -253,7 +256,7 @@ TEST(LineTracing, LeavesNoGapsWhereALineCouldStart)
 	const test::ExactCloud exact = test::exactCloud(request("torus", 2000));
 	LineTracingOptions     options;
 	options.minSpacing = options.maxSpacing = 4.0 * exact.minimum.medianSpacing;
-	const LineNetwork lines = trace(exact, options);
+	const LineNetwork lines                 = trace(exact, options);
 	for (const int family : {1, 2})
 		for (Index i = 0; i < exact.cloud.size(); ++i) {
 			double nearest = HUGE_VAL;
@@ -262,7 +265,9 @@ TEST(LineTracing, LeavesNoGapsWhereALineCouldStart)
 					nearest = std::min(
 						nearest,
 						distanceToSegment(
-							exact.cloud.positions.col(i), lines.vertices.col(a), lines.vertices.col(b)));
+							exact.cloud.positions.col(i),
+							lines.vertices.col(a),
+							lines.vertices.col(b)));
 			});
 			// Closing moves lines a little after the seeds beside them were skipped.
 			EXPECT_LT(nearest, 1.5 * options.minSpacing);
@@ -280,8 +285,8 @@ TEST(LineTracing, SpiralsDoNotRunNextToThemselves)
 	}
 	LineTracingOptions options;
 	options.minSpacing = options.maxSpacing = 4.0 * exact.minimum.medianSpacing;
-	const LineNetwork lines = trace(exact, options);
-	const double      area  = 4.0 * 180.0 * degree * 180.0 * degree * 0.4;
+	const LineNetwork lines                 = trace(exact, options);
+	const double      area                  = 4.0 * 180.0 * degree * 180.0 * degree * 0.4;
 	for (const int family : {1, 2}) {
 		EXPECT_GT(familyLength(lines, family), 0.5 * area / options.minSpacing);
 		EXPECT_LT(familyLength(lines, family), 2.3 * area / options.minSpacing);
@@ -299,7 +304,8 @@ TEST(LineTracing, DoesNotLeaveAnOpenSurface)
 		const AnalyticSurface& surface = samples::surface(name);
 		Index                  off     = 0;
 		for (Index i = 0; i < lines.vertices.cols(); ++i) {
-			const double d = (lines.vertices.col(i) - surface.project(lines.vertices.col(i))).norm();
+			const double d =
+				(lines.vertices.col(i) - surface.project(lines.vertices.col(i))).norm();
 			EXPECT_LT(d, 1.5 * exact.minimum.medianSpacing) << name;
 			off += d > 0.3 * exact.minimum.medianSpacing;
 		}
@@ -326,17 +332,16 @@ TEST(LineTracing, SphereTerminatesAndPlaneIsCovered)
 
 TEST(LineTracing, LinesGoOnWhereAFlatPartBends)
 {
-	const test::ExactCloud exact = test::exactCloud(request("bent_sheet", 4000));
+	const test::ExactCloud exact    = test::exactCloud(request("bent_sheet", 4000));
 	const UmbilicRegions   umbilics = findUmbilics(exact.cloud, exact.field, exact.minimum);
 	ASSERT_GE(umbilics.regions, 1);
 	const VoronoiCells cells(exact.cloud.positions);
-	const LineNetwork  lines =
-		traceLines(exact.cloud, exact.field, exact.minimum, umbilics, cells);
-	Index bridges = 0;
+	const LineNetwork  lines = traceLines(exact.cloud, exact.field, exact.minimum, umbilics, cells);
+	Index              bridges = 0;
 	for (Index l = 0; l < lines.lines(); ++l) {
 		bool flat = false, bent = false;
 		for (Index i = lines.offsets[l]; i < lines.offsets[l + 1]; ++i) {
-			const Index cell = cells.locate(lines.vertices.col(i), 0);
+			const Index cell                       = cells.locate(lines.vertices.col(i), 0);
 			(umbilics.umbilic[cell] ? flat : bent) = true;
 		}
 		bridges += flat && bent;
@@ -366,10 +371,10 @@ TEST(LineTracing, MeetsItsTarget)
 	for (const char* name : {"torus", "ellipsoid", "cylinder"}) {
 		const test::ExactCloud exact = test::exactCloud(request(name, 4000));
 		LineTracingOptions     options;
-		options.targetVertices  = 500;
-		const LineNetwork lines = trace(exact, options);
+		options.targetVertices   = 500;
+		const LineNetwork  lines = trace(exact, options);
 		const VoronoiCells cells(exact.cloud.positions);
-		const auto found = intersectLines(cells, lines).crossings.size();
+		const auto         found = intersectLines(cells, lines).crossings.size();
 		EXPECT_NEAR(double(found), 500.0, 75.0) << name;
 		EXPECT_GT(lines.epsilon, 0.0);
 	}
@@ -400,8 +405,8 @@ TEST(LineTracing, OrderOfPointsAndRigidMotionChangeLittle)
 	test::ExactCloud moved = exact;
 	const Index      n     = exact.cloud.size();
 	const auto       place = [&](const Eigen::Matrix3Xd& from, Eigen::Matrix3Xd& to) {
-		for (Index i = 0; i < n; ++i)
-			to.col(n - 1 - i) = turn * from.col(i);
+        for (Index i = 0; i < n; ++i)
+            to.col(n - 1 - i) = turn * from.col(i);
 	};
 	place(exact.cloud.positions, moved.cloud.positions);
 	place(exact.cloud.normals, moved.cloud.normals);
@@ -410,12 +415,14 @@ TEST(LineTracing, OrderOfPointsAndRigidMotionChangeLittle)
 	moved.sample.k1 = exact.sample.k1.reverse();
 	moved.sample.k2 = exact.sample.k2.reverse();
 	const NeighborSearch search(moved.cloud.positions);
-	moved.minimum = minimumNeighborhoods(moved.cloud, search);
-	moved.field   = test::exactField(moved.sample, moved.cloud, search, moved.minimum);
+	moved.minimum           = minimumNeighborhoods(moved.cloud, search);
+	moved.field             = test::exactField(moved.sample, moved.cloud, search, moved.minimum);
 	const LineNetwork other = trace(moved);
 	for (const int family : {1, 2})
 		EXPECT_NEAR(
-			familyLength(other, family), familyLength(lines, family), 0.15 * familyLength(lines, family));
+			familyLength(other, family),
+			familyLength(lines, family),
+			0.15 * familyLength(lines, family));
 }
 
 TEST(LineTracing, SurvivesSmallAndDegenerateClouds)
@@ -442,10 +449,10 @@ TEST(LineTracing, EndsOnTheRimAndNotBeyond)
 	const test::ExactCloud exact = test::exactCloud(request("helicoid", 4000));
 	LineTracingOptions     options;
 	options.minSpacing = options.maxSpacing = 0.05;
-	options.stopFactor     = meshStopFactor;
-	const LineNetwork lines = trace(exact, options);
-	const double      h     = exact.minimum.medianSpacing;
-	Index             rims  = 0, others = 0;
+	options.stopFactor                      = meshStopFactor;
+	const LineNetwork lines                 = trace(exact, options);
+	const double      h                     = exact.minimum.medianSpacing;
+	Index             rims = 0, others = 0;
 	for (const auto& both : lines.ends)
 		for (const LineEnd end : both)
 			++(end == LineEnd::Rim ? rims : others);
@@ -460,7 +467,7 @@ TEST(LineTracing, EndsOnTheRimAndNotBeyond)
 
 TEST(LineTracing, EndsOnTheCreasesOfACube)
 {
-	const LineNetwork lines = trace(test::exactCloud(request("cube", 4000)));
+	const LineNetwork lines   = trace(test::exactCloud(request("cube", 4000)));
 	Index             creases = 0, rims = 0;
 	for (const auto& both : lines.ends)
 		for (const LineEnd end : both) {
@@ -504,8 +511,8 @@ TEST(LineTracing, ArcLengthsStartAnewWithEveryLine)
 	LineNetwork lines;
 	lines.vertices.resize(3, 5);
 	lines.vertices << 0, 3, 3, 7, 7, 0, 4, 4, 0, 0, 0, 0, 2, 0, 1;
-	lines.offsets = {0, 3, 5};
-	lines.family  = {1, 2};
+	lines.offsets             = {0, 3, 5};
+	lines.family              = {1, 2};
 	const Eigen::VectorXd arc = arcLengths(lines);
 	EXPECT_EQ(arc, (Eigen::VectorXd(5) << 0.0, 5.0, 7.0, 0.0, 1.0).finished());
 }
@@ -524,9 +531,9 @@ TEST(LineTracing, TouchingSheetsKeepTheirOwnLines)
 	exact.cloud.positions.resize(3, 2 * n);
 	exact.cloud.normals.resize(3, 2 * n);
 	for (Index i = 0; i < 2 * n; ++i) {
-		const double side            = i < n ? 1.0 : -1.0;
-		exact.cloud.positions.col(i) = (i < n ? one : two).positions.col(i % n) +
-									   Vector3d(0.0, 0.0, 0.002 * side);
+		const double side = i < n ? 1.0 : -1.0;
+		exact.cloud.positions.col(i) =
+			(i < n ? one : two).positions.col(i % n) + Vector3d(0.0, 0.0, 0.002 * side);
 		exact.cloud.normals.col(i) = Vector3d(0.0, 0.0, side);
 		truth.d1.col(i)            = Vector3d::UnitX();
 		truth.d2.col(i)            = Vector3d(0.0, side, 0.0);
@@ -536,12 +543,11 @@ TEST(LineTracing, TouchingSheetsKeepTheirOwnLines)
 	exact.field   = test::exactField(truth, exact.cloud, search, exact.minimum);
 	LineTracingOptions options;
 	options.minSpacing = options.maxSpacing = 0.15;
-	const LineNetwork lines = trace(exact, options);
+	const LineNetwork lines                 = trace(exact, options);
 	expectSane(lines);
 	double length[2] = {0.0, 0.0};
 	forEachSegment(lines, [&](Index, Index a, Index b) {
-		length[lines.normals(2, a) > 0.0] +=
-			(lines.vertices.col(b) - lines.vertices.col(a)).norm();
+		length[lines.normals(2, a) > 0.0] += (lines.vertices.col(b) - lines.vertices.col(a)).norm();
 	});
 	EXPECT_GT(length[0], 0.25 * length[1]);
 	EXPECT_GT(length[1], 0.25 * length[0]);
@@ -555,7 +561,8 @@ TEST(LineTracing, CanBeCancelled)
 	const VoronoiCells     cells(exact.cloud.positions);
 	const Progress         progress([](double, const char*) { return false; });
 	EXPECT_THROW(
-		traceLines(exact.cloud, exact.field, exact.minimum, umbilics, cells, {}, progress), Cancelled);
+		traceLines(exact.cloud, exact.field, exact.minimum, umbilics, cells, {}, progress),
+		Cancelled);
 }
 
 } // namespace

@@ -20,10 +20,11 @@ tests::NetworkBuilder plane()
 TEST(LineUntangling, LeavesLinesThatDoNotCross)
 {
 	const LineNetwork lines = plane()
-								  .addSegment(1, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 10)
-								  .addSegment(2, {0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}, 10) // the other family
-								  .lines();
-	const LineNetwork same  = untangled(lines);
+	                              .addSegment(1, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 10)
+	                              // the other family
+	                              .addSegment(2, {0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}, 10)
+	                              .lines();
+	const LineNetwork same = untangled(lines);
 	EXPECT_EQ(same.vertices, lines.vertices);
 	EXPECT_EQ(same.offsets, lines.offsets);
 }
@@ -31,9 +32,9 @@ TEST(LineUntangling, LeavesLinesThatDoNotCross)
 TEST(LineUntangling, EndsTheLineThatLosesLeast)
 {
 	const LineNetwork lines = plane()
-								  .addSegment(1, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 10)
-								  .addSegment(1, {0.55, -0.9, 0.0}, {0.55, 0.15, 0.0}, 10)
-								  .lines();
+	                              .addSegment(1, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 10)
+	                              .addSegment(1, {0.55, -0.9, 0.0}, {0.55, 0.15, 0.0}, 10)
+	                              .lines();
 	ASSERT_EQ(crossingsWithinFamilies(lines), 1);
 	const LineNetwork cut = untangled(lines);
 	EXPECT_EQ(crossingsWithinFamilies(cut), 0);
@@ -46,7 +47,8 @@ TEST(LineUntangling, EndsTheLineThatLosesLeast)
 TEST(LineUntangling, TakesLoopsOut)
 {
 	const auto loop = [](double s) { // once around on the way
-		const double x = 2.0 * s - 1.0, angle = 2.0 * tests::Pi * std::clamp(2.5 * (s - 0.3), 0.0, 1.0);
+		const double x     = 2.0 * s - 1.0,
+					 angle = 2.0 * tests::Pi * std::clamp(2.5 * (s - 0.3), 0.0, 1.0);
 		return Vector3d(x + 0.6 * std::sin(angle), 0.2 * (1.0 - std::cos(angle)), 0.0);
 	};
 	const LineNetwork lines = plane().add(1, false, 60, loop).lines();
@@ -62,7 +64,10 @@ TEST(LineUntangling, ClosedLinesStayClosedWithoutTheirLoop)
 {
 	const auto eight = [](double s) { // a circle with a small one behind the crossing
 		const double angle = 2.0 * tests::Pi * s;
-		return Vector3d(std::cos(angle) + 0.7 * std::cos(2.0 * angle), std::sin(angle) + 0.7 * std::sin(2.0 * angle), 0.0);
+		return Vector3d(
+			std::cos(angle) + 0.7 * std::cos(2.0 * angle),
+			std::sin(angle) + 0.7 * std::sin(2.0 * angle),
+			0.0);
 	};
 	const LineNetwork lines = plane().add(1, true, 60, eight).lines();
 	ASSERT_EQ(crossingsWithinFamilies(lines), 1);
@@ -81,7 +86,8 @@ TEST(LineUntangling, OpensARingOnlyWhereTwoRingsCross)
 			return Vector3d(x + std::cos(angle), std::sin(angle), 0.0);
 		};
 	};
-	const LineNetwork lines = plane().add(1, true, 40, ring(0.0)).add(1, true, 50, ring(0.5)).lines();
+	const LineNetwork lines =
+		plane().add(1, true, 40, ring(0.0)).add(1, true, 50, ring(0.5)).lines();
 	ASSERT_EQ(crossingsWithinFamilies(lines), 2);
 	const LineNetwork cut = untangled(lines);
 	EXPECT_EQ(crossingsWithinFamilies(cut), 0);

@@ -84,8 +84,8 @@ LineNetwork squareLines(Index n, const Missing& missing)
 			const Vector3d along = family == 1 ? Vector3d::UnitX() : Vector3d::UnitY();
 			double         from  = 0.01;
 			const auto     flush = [&](double to) {
-				if (to - from > 0.02)
-					builder.addSegment(family, start + from * along, start + to * along, 40);
+                if (to - from > 0.02)
+                    builder.addSegment(family, start + from * along, start + to * along, 40);
 			};
 			for (double t = 0.01; t < 0.99; t += 0.01) {
 				if (missing(Vector3d(start + t * along))) {
@@ -176,7 +176,7 @@ TEST(QuadMesh, OpenSurfacesHaveTheirRims)
 	const PointCloud helicoid = sampleCloud("helicoid", 3000, 1);
 	NetworkBuilder   screw(normalOf("helicoid"), 0.003);
 	const auto       at = [](double u, double v) {
-		return Vector3d(u * std::cos(v), u * std::sin(v), 0.5 * v);
+        return Vector3d(u * std::cos(v), u * std::sin(v), 0.5 * v);
 	};
 	for (int i = 0; i < 30; ++i)
 		screw.add(1, false, 60, [&](double t) { return at(1.9 * (t - 0.5), 0.2 * (i - 14.5)); });

@@ -79,7 +79,7 @@ void removeAtRandom(HalfEdgeGraph& graph, Index count, unsigned seed)
 		bool bridge = false;
 		for (const std::vector<Index>& loop : graph.faceLoops())
 			bridge = bridge || (std::count(loop.begin(), loop.end(), 2 * e) &&
-								std::count(loop.begin(), loop.end(), 2 * e + 1));
+			                    std::count(loop.begin(), loop.end(), 2 * e + 1));
 		if (!bridge) {
 			graph.removeEdge(e);
 			--count;
@@ -100,7 +100,7 @@ bool everyHalfEdgeIsInOneLoop(const HalfEdgeGraph& graph)
 	}
 	std::sort(seen.begin(), seen.end());
 	return std::adjacent_find(seen.begin(), seen.end()) == seen.end() &&
-		   static_cast<Index>(seen.size()) == 2 * liveEdges(graph);
+	       static_cast<Index>(seen.size()) == 2 * liveEdges(graph);
 }
 
 PolygonMesh mesh(Index vertices, const std::vector<std::vector<Index>>& faces)

@@ -50,8 +50,8 @@ double signedArea(const PolygonMesh& mesh, Index f)
 	const auto& face = mesh.faces[f];
 	for (Index k = 0; k < face.size(); ++k)
 		area += 0.5 * Vector3d(mesh.vertices.col(face[k]))
-						  .cross(Vector3d(mesh.vertices.col(face[(k + 1) % face.size()])))
-						  .z();
+		                  .cross(Vector3d(mesh.vertices.col(face[(k + 1) % face.size()])))
+		                  .z();
 	return area;
 }
 

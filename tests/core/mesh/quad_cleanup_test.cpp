@@ -77,12 +77,18 @@ PolygonMesh diagonalRim(Index cells, double gap)
 	const auto add = [&](const std::vector<std::pair<double, double>>& corners) {
 		faces.emplace_back();
 		for (const auto& p : corners)
-			faces.back().push_back(names.try_emplace(p, static_cast<Index>(names.size())).first->second);
+			faces.back().push_back(
+				names.try_emplace(p, static_cast<Index>(names.size())).first->second);
 	};
 	const double below = 1.0 - gap;
 	for (double i = 0.0; i < cells; ++i) {
 		add({{i, i + below}, {i + gap, i + 1.0}, {i, i + 1.0}});
-		add({{i, i + 1.0}, {i + gap, i + 1.0}, {i + 1.0, i + 1.0 + below}, {i + 1.0, i + 2.0}, {i, i + 2.0}});
+		add(
+			{{i, i + 1.0},
+		     {i + gap, i + 1.0},
+		     {i + 1.0, i + 1.0 + below},
+		     {i + 1.0, i + 2.0},
+		     {i, i + 2.0}});
 		add({{i, i + 2.0}, {i + 1.0, i + 2.0}, {i + 1.0, i + 3.0}, {i, i + 3.0}});
 	}
 	PolygonMesh mesh;

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "reconstruction.h"
 #include "analytic_surfaces.h"
+#include "reconstruction.h"
 
 namespace curvature_lines {
 namespace {
@@ -81,11 +81,11 @@ TEST(Reconstruction, CleanTorusIsAQuadDominantTorus)
 TEST(Reconstruction, CubeKeepsItsEdges)
 {
 	samples::SampleRequest request;
-	request.surface                       = "cube";
-	request.points                        = 6000;
-	request.seed                          = 2;
-	const Scan                 scan       = scanOf(request);
-	const ReconstructionResult result     = reconstruct(scan.prepared.cloud, quick());
+	request.surface                   = "cube";
+	request.points                    = 6000;
+	request.seed                      = 2;
+	const Scan                 scan   = scanOf(request);
+	const ReconstructionResult result = reconstruct(scan.prepared.cloud, quick());
 	EXPECT_EQ(result.creases.curves.size(), 12u);
 	EXPECT_EQ(result.mesh.topology.eulerCharacteristic, 2);
 	EXPECT_EQ(result.mesh.topology.boundaryEdges, 0);
@@ -94,7 +94,8 @@ TEST(Reconstruction, CubeKeepsItsEdges)
 	Index                   onEdges  = 0;
 	for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
 		Eigen::Array3d to = 0.5 - scan.prepared.toModel(vertices.col(i)).array().abs();
-		std::sort(to.data(), to.data() + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
+		std::sort(
+			to.data(), to.data() + 3, [](double a, double b) { return std::abs(a) < std::abs(b); });
 		onEdges += std::abs(to[0]) < 0.003 && std::abs(to[1]) < 0.003;
 	}
 	EXPECT_GT(onEdges, 12 * 4);
@@ -116,10 +117,10 @@ TEST(Reconstruction, DirtyScanIsCleanedAndStaysManifold)
 
 TEST(Reconstruction, DenoisesRobustlyUnlessToldToDoAsPublished)
 {
-	const Scan            scan    = scanOf(torus(1500, 0.005));
-	const double          before  = distanceTo("torus", scan.prepared, scan.prepared.cloud.positions);
-	ReconstructionOptions options = quick();
-	options.denoise               = true;
+	const Scan   scan   = scanOf(torus(1500, 0.005));
+	const double before = distanceTo("torus", scan.prepared, scan.prepared.cloud.positions);
+	ReconstructionOptions options     = quick();
+	options.denoise                   = true;
 	const ReconstructionResult robust = reconstruct(scan.prepared.cloud, options);
 	EXPECT_LT(distanceTo("torus", scan.prepared, robust.cloud.positions), 0.3 * before);
 	EXPECT_NEAR(robust.noise, 0.005, 0.001);
@@ -166,7 +167,8 @@ TEST(Reconstruction, ThinsCloudsMuchDenserThanTheMesh)
 	EXPECT_EQ(thinned.mesh.topology.boundaryEdges, 0);
 	EXPECT_LT(distanceTo("torus", scan.prepared, thinned.mesh.mesh.vertices), 0.001);
 	for (Index i = 0; i < thinned.cloud.size(); i += 100)
-		EXPECT_EQ(thinned.cloud.positions.col(i), scan.prepared.cloud.positions.col(thinned.kept[i]));
+		EXPECT_EQ(
+			thinned.cloud.positions.col(i), scan.prepared.cloud.positions.col(thinned.kept[i]));
 
 	options.pointsPerVertex = 0.0;
 	EXPECT_EQ(reconstruct(scan.prepared.cloud, options).cloud.size(), scan.prepared.cloud.size());
@@ -185,7 +187,7 @@ TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
 	for (const char* stage : {"outliers", "denoising", "directions"})
 		EXPECT_EQ(result.seconds.count(stage), 0u) << stage;
 	for (const char* stage :
-		 {"neighborhoods", "curvature", "umbilics", "voronoi", "tracing", "mesh"})
+	     {"neighborhoods", "curvature", "umbilics", "voronoi", "tracing", "mesh"})
 		EXPECT_EQ(result.seconds.count(stage), 1u) << stage;
 	const ReconstructionResult field = reconstruct(scan.prepared.cloud, quick());
 	for (const char* stage : {"neighborhoods", "curvature", "creases", "mesh"})
@@ -196,7 +198,7 @@ TEST(Reconstruction, SwitchedOffStagesTakeNoTimeAndChangeNothing)
 // The published scale leaves the normals to denoising; the directions are tangent to them either way.
 TEST(Reconstruction, BothScaleModes)
 {
-	const Scan            scan = scanOf(torus(1000));
+	const Scan            scan    = scanOf(torus(1000));
 	ReconstructionOptions options = quick();
 	for (const ScaleMode mode : {ScaleMode::Adaptive, ScaleMode::Paper}) {
 		options.curvature.scaleMode       = mode;
@@ -213,7 +215,7 @@ TEST(Reconstruction, DensityFollowsTheCloudUnlessGiven)
 	const Scan            scan     = scanOf(torus(1200));
 	ReconstructionOptions options  = quick();
 	const auto            vertices = [&] {
-		return double(reconstruct(scan.prepared.cloud, options).mesh.topology.vertices);
+        return double(reconstruct(scan.prepared.cloud, options).mesh.topology.vertices);
 	};
 	EXPECT_NEAR(vertices(), automaticTargetVertices(1200), 0.5 * automaticTargetVertices(1200));
 	options.tracing.targetVertices = 50;

@@ -7,8 +7,8 @@
 #include <omp.h>
 
 #include "curvature_driven_projection.h"
-#include "moving_least_squares.h"
 #include "estimated_field.h"
+#include "moving_least_squares.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -19,7 +19,8 @@ using Diffusion = CurvatureDrivenOptions::Diffusion;
 
 struct Control {
 	Control(const Matrix3Xd& positions, const Matrix3Xd& normals) :
-			cloud{positions, normals}, search(cloud.positions), minimum(minimumNeighborhoods(cloud, search))
+			cloud{positions, normals}, search(cloud.positions),
+			minimum(minimumNeighborhoods(cloud, search))
 	{
 	}
 	CurvatureDrivenSurface surface(const CurvatureDrivenOptions& options = {}) const
@@ -60,14 +61,14 @@ Matrix3Xd scattered(const Matrix3Xd& positions, double by)
 
 TEST(CurvatureDrivenProjection, LandsOnACleanSurface)
 {
-	const auto            torus = sampled("torus", 20000);
-	const Control         control(torus.positions, torus.normals);
-	const Matrix3Xd       queries = scattered(torus.positions.leftCols(4000), 0.5 * control.spacing());
-	const ProjectedPoints found   = projectPoints(control.surface(), queries);
+	const auto      torus = sampled("torus", 20000);
+	const Control   control(torus.positions, torus.normals);
+	const Matrix3Xd queries = scattered(torus.positions.leftCols(4000), 0.5 * control.spacing());
+	const ProjectedPoints found = projectPoints(control.surface(), queries);
 	EXPECT_EQ(std::count(found.projected.begin(), found.projected.end(), 1), 4000);
 	EXPECT_LT(distance("torus", found.positions), 0.01 * control.spacing());
 
-	const auto truth = samples::groundTruth(samples::surface("torus"), found.positions);
+	const auto truth   = samples::groundTruth(samples::surface("torus"), found.positions);
 	double     normals = 0.0, k1 = 0.0;
 	const CurvatureDrivenSurface surface = control.surface();
 	for (Index i = 0; i < 4000; ++i) {
@@ -85,7 +86,8 @@ TEST(CurvatureDrivenProjection, LandsOnACleanSurface)
 	// What has been projected stays.
 	const ProjectedPoints again = projectPoints(control.surface(), found.positions, {1e-4, 1});
 	EXPECT_LT(
-		std::sqrt((again.positions - found.positions).squaredNorm() / 4000), 1e-3 * control.spacing());
+		std::sqrt((again.positions - found.positions).squaredNorm() / 4000),
+		1e-3 * control.spacing());
 }
 
 TEST(CurvatureDrivenProjection, PublishedDiffusionShrinksByASmallShareOfTheSpacing)
@@ -94,18 +96,20 @@ TEST(CurvatureDrivenProjection, PublishedDiffusionShrinksByASmallShareOfTheSpaci
 	const Control control(torus.positions, torus.normals);
 	for (const Diffusion diffusion : {Diffusion::Cutoff, Diffusion::Rational}) {
 		CurvatureDrivenOptions options;
-		options.diffusion          = diffusion;
+		options.diffusion           = diffusion;
 		const ProjectedPoints found = projectPoints(control.surface(options), torus.positions);
 		EXPECT_LT(distance("torus", found.positions), 0.2 * control.spacing());
-		EXPECT_GT(distance("torus", found.positions), 2.0 * distance("torus", projectPoints(control.surface(), torus.positions).positions));
+		EXPECT_GT(
+			distance("torus", found.positions),
+			2.0 * distance("torus", projectPoints(control.surface(), torus.positions).positions));
 	}
 }
 
 TEST(CurvatureDrivenProjection, RemovesNoise)
 {
-	const auto    torus = sampled("torus", 20000, 0.005);
-	const Control control(torus.positions, planeFitNormals(torus, 16));
-	const Matrix3Xd some = torus.positions.leftCols(3000);
+	const auto            torus = sampled("torus", 20000, 0.005);
+	const Control         control(torus.positions, planeFitNormals(torus, 16));
+	const Matrix3Xd       some  = torus.positions.leftCols(3000);
 	const ProjectedPoints found = projectPoints(control.surface(), some);
 	EXPECT_LT(distance("torus", found.positions), 0.35 * distance("torus", some));
 }
@@ -114,17 +118,20 @@ TEST(MovingLeastSquares, LandsOnACleanSurfaceAndStays)
 {
 	const auto                      torus = sampled("torus", 20000);
 	const Control                   control(torus.positions, torus.normals);
-	const MovingLeastSquaresSurface surface({control.cloud, control.search, control.minimum.spacing});
-	const Matrix3Xd       queries = scattered(torus.positions.leftCols(2000), 0.5 * control.spacing());
-	const ProjectedPoints found   = projectPoints(surface, queries);
+	const MovingLeastSquaresSurface surface(
+		{control.cloud, control.search, control.minimum.spacing});
+	const Matrix3Xd queries = scattered(torus.positions.leftCols(2000), 0.5 * control.spacing());
+	const ProjectedPoints found = projectPoints(surface, queries);
 	EXPECT_EQ(std::count(found.projected.begin(), found.projected.end(), 1), 2000);
 	EXPECT_LT(distance("torus", found.positions), 0.01 * control.spacing());
 	const ProjectedPoints again = projectPoints(surface, found.positions, {1e-4, 1});
 	EXPECT_LT(
-		std::sqrt((again.positions - found.positions).squaredNorm() / 2000), 1e-3 * control.spacing());
+		std::sqrt((again.positions - found.positions).squaredNorm() / 2000),
+		1e-3 * control.spacing());
 	const ProjectedPoints other = projectPoints(control.surface(), queries);
 	EXPECT_LT(
-		std::sqrt((other.positions - found.positions).squaredNorm() / 2000), 0.2 * control.spacing());
+		std::sqrt((other.positions - found.positions).squaredNorm() / 2000),
+		0.2 * control.spacing());
 }
 
 TEST(CurvatureDrivenProjection, PlaneIsExactAndItsBoundaryEnds)
@@ -132,9 +139,9 @@ TEST(CurvatureDrivenProjection, PlaneIsExactAndItsBoundaryEnds)
 	const auto    sheet = sampled("plane", 2000);
 	const Control control(sheet.positions, sheet.normals);
 	Matrix3Xd     queries(3, 3);
-	queries.col(0) = Vector3d(0.1, 0.2, 0.01);
-	queries.col(1) = Vector3d(0.1, 0.2, 5.0);
-	queries.col(2) = Vector3d(9.0, 0.0, 0.0);
+	queries.col(0)              = Vector3d(0.1, 0.2, 0.01);
+	queries.col(1)              = Vector3d(0.1, 0.2, 5.0);
+	queries.col(2)              = Vector3d(9.0, 0.0, 0.0);
 	const ProjectedPoints found = projectPoints(control.surface(), queries);
 	EXPECT_TRUE(found.projected[0]);
 	EXPECT_LT((found.positions.col(0) - Vector3d(0.1, 0.2, 0.0)).norm(), 1e-9);
@@ -146,8 +153,8 @@ TEST(CurvatureDrivenProjection, PlaneIsExactAndItsBoundaryEnds)
 
 TEST(CurvatureDrivenProjection, SheetsThatTouchDoNotMix)
 {
-	const auto sheet = sampled("plane", 2000);
-	Matrix3Xd  positions(3, 4000), normals(3, 4000);
+	const auto     sheet = sampled("plane", 2000);
+	Matrix3Xd      positions(3, 4000), normals(3, 4000);
 	const Vector3d gap(0, 0, -0.02);
 	positions << sheet.positions, sheet.positions.colwise() + gap;
 	normals << sheet.normals, -sheet.normals;
@@ -158,7 +165,7 @@ TEST(CurvatureDrivenProjection, SheetsThatTouchDoNotMix)
 
 TEST(CurvatureDrivenProjection, InvariancesOfTheGeometry)
 {
-	const auto            shape   = sampled("ellipsoid", 2000, 0.001);
+	const auto            shape = sampled("ellipsoid", 2000, 0.001);
 	const Control         control(shape.positions, shape.normals);
 	const Matrix3Xd       queries = shape.positions.leftCols(500);
 	const ProjectedPoints base    = projectPoints(control.surface(), queries);
@@ -196,14 +203,14 @@ TEST(ControlNeighborhood, SumsAreThoseOfTheFormula)
 	const auto          torus = sampled("torus", 3000, 0.002);
 	const Control       control(torus.positions, torus.normals);
 	const ControlPoints points{control.cloud, control.search, control.minimum.spacing};
-	const Vector3d      place = torus.positions.col(7) + 0.3 * control.spacing() * torus.normals.col(7);
+	const Vector3d place = torus.positions.col(7) + 0.3 * control.spacing() * torus.normals.col(7);
 	ControlNeighborhood around;
 	ASSERT_TRUE(around.gather(points, place, 4.4));
 	EXPECT_GT(around.size(), 40);
 	EXPECT_NEAR(around.spacing(), control.spacing(), 0.3 * control.spacing());
-	const double    h = 2.0 * around.spacing();
-	NormalSums      normals;
-	PlaneSums       plane;
+	const double h = 2.0 * around.spacing();
+	NormalSums   normals;
+	PlaneSums    plane;
 	for (int k = 0; k < around.size(); ++k) {
 		const Vector3d d = around.position(k) - place;
 		const double   w = std::exp(-d.squaredNorm() / (h * h));
@@ -213,8 +220,8 @@ TEST(ControlNeighborhood, SumsAreThoseOfTheFormula)
 		normals.plane += w * d.dot(around.normal(k));
 		plane.square += w * d * d.transpose();
 	}
-	const NormalSums a = around.normalSums(place, h);
-	const PlaneSums  b = around.planeSums(place, h);
+	const NormalSums a    = around.normalSums(place, h);
+	const PlaneSums  b    = around.planeSums(place, h);
 	const double     near = 1e-8 * normals.weight;
 	EXPECT_NEAR(a.weight, normals.weight, near);
 	EXPECT_LT((a.offset - normals.offset).norm(), near * h);
@@ -242,7 +249,8 @@ TEST(ControlNeighborhood, UnevenCloudsGiveSomeNeighboursAndNotTooMany)
 	// A patch much denser than the sheet it is on, and a sheet behind it.
 	const auto sparse = sampled("plane", 1600);
 	Matrix3Xd  positions(3, 4200), normals = Vector3d::UnitZ().replicate(1, 4200);
-	positions << sparse.positions, 0.2 * sampled("plane", 1000).positions, sparse.positions.colwise() - Vector3d(0, 0, 0.02);
+	positions << sparse.positions, 0.2 * sampled("plane", 1000).positions,
+		sparse.positions.colwise() - Vector3d(0, 0, 0.02);
 	normals.rightCols(1600) *= -1.0;
 	const Control       control(positions, normals);
 	const ControlPoints points{control.cloud, control.search, control.minimum.spacing};

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "m_weighted_curvature.h"
 #include "estimated_field.h"
+#include "m_weighted_curvature.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -28,7 +28,9 @@ samples::SampleCloud sampled(const std::string& surface, int points, double nois
 }
 
 EstimatedField estimate(
-	const Matrix3Xd& positions, const Matrix3Xd& normals, const MWeightedCurvatureOptions& options = {})
+	const Matrix3Xd&                 positions,
+	const Matrix3Xd&                 normals,
+	const MWeightedCurvatureOptions& options = {})
 {
 	EstimatedField result;
 	result.prepared = prepareCloud(positions, normals);
@@ -46,12 +48,15 @@ TEST(MWeight, PeaksAtBandwidthTimesRootOfExponent)
 			// Where the derivative changes its sign.
 			double low = 0.5 * peak, high = 1.5 * peak;
 			for (int it = 0; it < 200; ++it) {
-				const double x     = 0.5 * (low + high);
-				const double slope = 2.0 * double(xi) / x - 2.0 * x / (h * h); // of log w
+				const double x             = 0.5 * (low + high);
+				const double slope         = 2.0 * double(xi) / x - 2.0 * x / (h * h); // of log w
 				(slope > 0.0 ? low : high) = x;
 			}
 			EXPECT_NEAR(low, peak, 1e-9);
-			EXPECT_NEAR(mWeight(peak, h, xi), std::pow(peak, 2.0 * double(xi)) * std::exp(-double(xi)), 1e-9);
+			EXPECT_NEAR(
+				mWeight(peak, h, xi),
+				std::pow(peak, 2.0 * double(xi)) * std::exp(-double(xi)),
+				1e-9);
 			for (const double step : {1e-4, 0.1, 0.4})
 				for (const double side : {-1.0, 1.0})
 					EXPECT_LT(mWeight(peak * (1.0 + side * step), h, xi), mWeight(peak, h, xi));
@@ -125,16 +130,17 @@ TEST(MWeightedCurvature, ExactSurfaces)
 	EXPECT_LT(fine.k2, 0.02);
 	EXPECT_LT(fine.direction, 0.01);
 	// Smaller with the square of the spacing on an even density, in between on a random one.
-	EXPECT_LT(fine.k1, 0.55 * curvatureErrors(estimate(coarse.positions, coarse.normals), coarse).k1);
+	EXPECT_LT(
+		fine.k1, 0.55 * curvatureErrors(estimate(coarse.positions, coarse.normals), coarse).k1);
 }
 
 TEST(MWeightedCurvature, WithstandsNoiseBetterThanOtherWeights) // T06 fig. 6
 {
 	const auto sample = sampled("torus", 2000, 0.0025);
 	const auto k1     = [&](Weighting weighting) {
-		MWeightedCurvatureOptions options;
-		options.weighting = weighting;
-		return curvatureErrors(estimate(sample.positions, sample.normals, options), sample).k1;
+        MWeightedCurvatureOptions options;
+        options.weighting = weighting;
+        return curvatureErrors(estimate(sample.positions, sample.normals, options), sample).k1;
 	};
 	const double m = k1(Weighting::M);
 	EXPECT_LT(m, 0.3);
@@ -151,7 +157,9 @@ TEST(MWeightedCurvature, ErrorIsThatOfTheDifference)
 	for (Index i = 0; i < estimated.field.size(); ++i) {
 		const Index  s     = estimated.prepared.source[i];
 		const double error = estimated.field.error[i] / estimated.prepared.diagonal;
-		pull += std::pow((estimated.k1(i) - estimated.k2(i) - sample.k1[s] + sample.k2[s]) / error, 2) / n;
+		pull +=
+			std::pow((estimated.k1(i) - estimated.k2(i) - sample.k1[s] + sample.k2[s]) / error, 2) /
+			n;
 	}
 	// The place's own displacement is in all its directional curvatures alike and not seen in their scatter.
 	EXPECT_GT(std::sqrt(pull), 0.5);
@@ -160,9 +168,9 @@ TEST(MWeightedCurvature, ErrorIsThatOfTheDifference)
 
 TEST(MWeightedCurvature, WeightsOfARowSumUpToOne)
 {
-	const auto sample    = sampled("torus", 500);
-	const auto estimated = estimate(sample.positions, sample.normals);
-	const auto& weights  = estimated.field.weights;
+	const auto  sample    = sampled("torus", 500);
+	const auto  estimated = estimate(sample.positions, sample.normals);
+	const auto& weights   = estimated.field.weights;
 	for (Index i = 0; i < estimated.field.size(); ++i) {
 		double sum = 0.0;
 		for (const Index j : weights.neighbors[i]) {
@@ -176,13 +184,15 @@ TEST(MWeightedCurvature, WeightsOfARowSumUpToOne)
 
 TEST(MWeightedCurvature, InvariancesOfTheGeometry)
 {
-	const auto      sample = sampled("ellipsoid", 700, 0.002);
+	const auto      sample  = sampled("ellipsoid", 700, 0.002);
 	const Matrix3Xd normals = planeFitNormals(sample, 16);
 	const auto      base    = estimate(sample.positions, normals);
 	const Index     n       = base.field.size();
 
 	const auto flipped = estimate(sample.positions, -normals);
-	EXPECT_LT((base.field.k1 + flipped.field.k2).cwiseAbs().maxCoeff(), 1e-9 * base.field.k1.cwiseAbs().maxCoeff());
+	EXPECT_LT(
+		(base.field.k1 + flipped.field.k2).cwiseAbs().maxCoeff(),
+		1e-9 * base.field.k1.cwiseAbs().maxCoeff());
 
 	const auto scaled = estimate(1e6 * sample.positions, normals);
 	for (Index i = 0; i < n; ++i)
@@ -226,7 +236,8 @@ TEST(MWeightedCurvature, DegenerateCloudsGiveFiniteFrames)
 			cloud.positions.row(0).setLinSpaced(0.0, n > 1 ? 1.0 : 0.0);
 		cloud.normals.setZero(3, n);
 		cloud.normals.row(2).setConstant(-1.0);
-		for (const Weighting weighting : {Weighting::M, Weighting::Gaussian, Weighting::Unweighted}) {
+		for (const Weighting weighting :
+		     {Weighting::M, Weighting::Gaussian, Weighting::Unweighted}) {
 			MWeightedCurvatureOptions options;
 			options.weighting = weighting;
 			const NeighborSearch search(cloud.positions);

@@ -7,9 +7,9 @@
 #include <omp.h>
 
 #include "curvature_driven_projection.h"
+#include "estimated_field.h"
 #include "moving_least_squares.h"
 #include "ray_tracing.h"
-#include "estimated_field.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -18,12 +18,10 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 struct Scene {
-	explicit Scene(const std::string& surface, int points) :
-			Scene(cloudOf(surface, points))
-	{
-	}
+	explicit Scene(const std::string& surface, int points) : Scene(cloudOf(surface, points)) {}
 	explicit Scene(PointCloud points) :
-			cloud(std::move(points)), search(cloud.positions), minimum(minimumNeighborhoods(cloud, search))
+			cloud(std::move(points)), search(cloud.positions),
+			minimum(minimumNeighborhoods(cloud, search))
 	{
 	}
 	static PointCloud cloudOf(const std::string& surface, int points)
@@ -52,10 +50,12 @@ RayTracingOptions small(int width = 60, int height = 40)
 
 TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
 {
-	const Scene                  scene("sphere", 4000);
-	const CurvatureDrivenSurface driven(scene.control());
+	const Scene                     scene("sphere", 4000);
+	const CurvatureDrivenSurface    driven(scene.control());
 	const MovingLeastSquaresSurface squares(scene.control());
-	for (const PointSetSurface* surface : {static_cast<const PointSetSurface*>(&driven), static_cast<const PointSetSurface*>(&squares)}) {
+	for (const PointSetSurface* surface :
+	     {static_cast<const PointSetSurface*>(&driven),
+	      static_cast<const PointSetSurface*>(&squares)}) {
 		const RayTracer tracer(*surface, scene.control(), {});
 		int             wrong = 0, rays = 0;
 		for (double x = -1.1; x <= 1.1; x += 0.1)
@@ -67,7 +67,10 @@ TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
 				wrong += hit.exists() != (square > 0.0);
 				if (!hit.exists() || square <= 0.0)
 					continue;
-				EXPECT_NEAR(hit.depth, 5.0 - std::sqrt(square), 0.1 * scene.minimum.medianSpacing / std::sqrt(square));
+				EXPECT_NEAR(
+					hit.depth,
+					5.0 - std::sqrt(square),
+					0.1 * scene.minimum.medianSpacing / std::sqrt(square));
 				EXPECT_GT(hit.normal.dot(hit.position.normalized()), 0.999);
 			}
 		EXPECT_LE(wrong, rays / 200);
@@ -80,9 +83,9 @@ TEST(RayTracing, BothSurfacesShowTheSamePicture)
 	const Camera                    camera = Camera::facing(scene.cloud, 1.5);
 	const CurvatureDrivenSurface    driven(scene.control());
 	const MovingLeastSquaresSurface squares(scene.control());
-	const auto options = small(120, 80);
-	const auto a = traceImage(RayTracer(driven, scene.control(), options), camera, options);
-	const auto b = traceImage(RayTracer(squares, scene.control(), options), camera, options);
+	const auto                      options = small(120, 80);
+	const auto a      = traceImage(RayTracer(driven, scene.control(), options), camera, options);
+	const auto b      = traceImage(RayTracer(squares, scene.control(), options), camera, options);
 	int        differ = 0, both = 0, seen = 0;
 	double     depth = 0.0;
 	for (std::size_t p = 0; p < a.size(); ++p) {
@@ -103,11 +106,12 @@ TEST(RayTracing, CameraSeesAllPointsAndTheFrontOfAScan)
 	const Scene  scene("bent_sheet", 1000);
 	const Camera camera = Camera::facing(scene.cloud, 1.5);
 	EXPECT_GT((camera.position - camera.target).dot(scene.cloud.normals.rowwise().mean()), 0.0);
-	const auto   options = small();
-	const Ray    middle  = rayThrough(camera, options, 30.0, 20.0);
+	const auto options = small();
+	const Ray  middle  = rayThrough(camera, options, 30.0, 20.0);
 	EXPECT_LT(middle.direction.cross(camera.target - camera.position).norm(), 1e-9);
-	const Vector3d right = middle.direction.cross(camera.up).normalized(), up = right.cross(middle.direction);
-	const double   half  = std::tan(camera.fieldOfView * EIGEN_PI / 360.0);
+	const Vector3d right = middle.direction.cross(camera.up).normalized(),
+				   up    = right.cross(middle.direction);
+	const double half    = std::tan(camera.fieldOfView * EIGEN_PI / 360.0);
 	for (Index i = 0; i < scene.cloud.size(); ++i) {
 		const Vector3d d = scene.cloud.positions.col(i) - camera.position;
 		EXPECT_LE(std::abs(d.dot(right) / d.dot(middle.direction)), 1.5 * half);
@@ -159,16 +163,23 @@ TEST(RayTracing, ClosedShapesWithSharpEdgesHideTheirBacks)
 		const MovingLeastSquaresSurface squares(scene.control());
 		const auto                      options = small(150, 100);
 		const Camera                    camera  = Camera::facing(scene.cloud, 1.5);
-		for (const PointSetSurface* surface : {static_cast<const PointSetSurface*>(&driven), static_cast<const PointSetSurface*>(&squares)}) {
-			const auto hits = traceImage(RayTracer(*surface, scene.control(), options), camera, options);
-			int        seen = 0, backs = 0, holes = 0;
+		for (const PointSetSurface* surface :
+		     {static_cast<const PointSetSurface*>(&driven),
+		      static_cast<const PointSetSurface*>(&squares)}) {
+			const auto hits =
+				traceImage(RayTracer(*surface, scene.control(), options), camera, options);
+			int seen = 0, backs = 0, holes = 0;
 			for (int y = 1; y + 1 < options.height; ++y)
 				for (int x = 1; x + 1 < options.width; ++x) {
-					const auto    at  = [&](int dx, int dy) { return hits[(y + dy) * options.width + x + dx]; };
+					const auto at = [&](int dx, int dy) {
+						return hits[(y + dy) * options.width + x + dx];
+					};
 					const RayHit& hit = at(0, 0);
 					seen += hit.exists();
-					backs += hit.exists() && hit.normal.dot(camera.position - hit.position) < -0.1 * hit.depth;
-					holes += !hit.exists() && at(-1, 0).exists() && at(1, 0).exists() && at(0, -1).exists() && at(0, 1).exists();
+					backs += hit.exists() &&
+					         hit.normal.dot(camera.position - hit.position) < -0.1 * hit.depth;
+					holes += !hit.exists() && at(-1, 0).exists() && at(1, 0).exists() &&
+					         at(0, -1).exists() && at(0, 1).exists();
 				}
 			EXPECT_GT(seen, 2500);
 			EXPECT_LE(backs, seen / 250) << shape; // along outlines
@@ -190,7 +201,8 @@ PointCloud plate(double thickness, int across)
 				const Vector3d normal(side(i, across), side(j, across), side(k, layers));
 				if (normal.isZero())
 					continue;
-				positions.push_back(Vector3d(i * spacing - 0.5, j * spacing - 0.5, k * spacing - 0.5 * thickness));
+				positions.push_back(
+					Vector3d(i * spacing - 0.5, j * spacing - 0.5, k * spacing - 0.5 * thickness));
 				normals.push_back(normal.normalized());
 			}
 	PointCloud cloud{Matrix3Xd(3, positions.size()), Matrix3Xd(3, positions.size())};
@@ -204,7 +216,8 @@ PointCloud plate(double thickness, int across)
 bool meetsBox(const Ray& ray, const Vector3d& half)
 {
 	const Eigen::Array3d inverse = ray.direction.array().inverse();
-	const Eigen::Array3d a = (-half - ray.origin).array() * inverse, b = (half - ray.origin).array() * inverse;
+	const Eigen::Array3d a       = (-half - ray.origin).array() * inverse,
+						 b       = (half - ray.origin).array() * inverse;
 	return a.min(b).maxCoeff() < a.max(b).minCoeff();
 }
 
@@ -217,8 +230,14 @@ TEST(RayTracing, ThinPlatesHaveNoHolesAndCleanOutlines)
 		const CurvatureDrivenSurface    driven(scene.control());
 		const MovingLeastSquaresSurface squares(scene.control());
 		const Vector3d                  half(0.5, 0.5, 0.5 * thickness);
-		for (const PointSetSurface* surface : {static_cast<const PointSetSurface*>(&driven), static_cast<const PointSetSurface*>(&squares)})
-			for (const Vector3d& tilt : {Vector3d(0.02, 0.01, 1.0), Vector3d(0.2, 0.05, 1.0), Vector3d(0.4, 0.3, 1.0), Vector3d(1.0, 0.2, 0.1)}) {
+		for (const PointSetSurface* surface :
+		     {static_cast<const PointSetSurface*>(&driven),
+		      static_cast<const PointSetSurface*>(&squares)})
+			for (const Vector3d& tilt :
+			     {Vector3d(0.02, 0.01, 1.0),
+			      Vector3d(0.2, 0.05, 1.0),
+			      Vector3d(0.4, 0.3, 1.0),
+			      Vector3d(1.0, 0.2, 0.1)}) {
 				const RayTracer    tracer(*surface, scene.control(), {});
 				const Vector3d     direction = -tilt.normalized();
 				const TangentFrame frame(direction);
@@ -229,7 +248,7 @@ TEST(RayTracing, ThinPlatesHaveNoHolesAndCleanOutlines)
 				for (double x = -0.9; x < 0.9; x += 0.017)
 					for (double y = -0.9; y < 0.9; y += 0.017) {
 						const Ray  ray{x * frame.u + y * frame.v - 3.0 * direction, direction};
-						const bool hit = tracer.trace(ray).exists();
+						const bool hit  = tracer.trace(ray).exists();
 						const bool deep = meetsBox(ray, half.array() - 0.8 * spacing);
 						inside += deep;
 						holes += deep && !hit;
@@ -270,7 +289,8 @@ TEST(RayTracing, FewPointsAreNoSurfaceAndARowOfThemAStripAtMost)
 		const CurvatureDrivenSurface surface(scene.control());
 		const auto                   options = small(16, 16);
 		const Camera                 camera  = Camera::facing(scene.cloud, 1.0);
-		for (const RayHit& hit : traceImage(RayTracer(surface, scene.control(), options), camera, options)) {
+		for (const RayHit& hit :
+		     traceImage(RayTracer(surface, scene.control(), options), camera, options)) {
 			EXPECT_TRUE(n == 30 || !hit.exists());
 			EXPECT_NEAR(hit.position.z(), 0.0, 1e-9);
 		}

@@ -25,15 +25,16 @@ std::vector<Triangle> withSortedCorners(std::vector<Triangle> triangles)
 TEST(AdvancingFront, DoesNotDependOnAddresses)
 {
 	samples::SampleRequest request;
-	request.surface = "l_block";
-	request.points  = 4000;
-	request.noise   = 0.01;
+	request.surface                      = "l_block";
+	request.points                       = 4000;
+	request.noise                        = 0.01;
 	const auto                   sample  = samples::generate(request);
 	const Eigen::VectorXd        longest = Eigen::VectorXd::Constant(4000, 0.3);
 	std::vector<Triangle>        first;
 	std::list<std::vector<char>> held;
 	for (int run = 0; run < 8; ++run) {
-		const std::vector<Triangle> found = withSortedCorners(advancingFront(sample.positions, sample.normals, longest));
+		const std::vector<Triangle> found =
+			withSortedCorners(advancingFront(sample.positions, sample.normals, longest));
 		ASSERT_GT(found.size(), 4000u);
 		if (run == 0)
 			first = found;
@@ -49,14 +50,15 @@ TEST(AdvancingFront, DoesNotDependOnAddresses)
 TEST(AdvancingFront, DoesNotJoinSheetsThatTouch)
 {
 	samples::SampleRequest request;
-	request.surface   = "sphere";
-	request.points    = 3000;
-	const auto sample = samples::generate(request);
-	const Eigen::Vector3d center = sample.positions.rowwise().mean();
-	const double radius  = (sample.positions.colwise() - center).colwise().norm().mean();
-	const double spacing = std::sqrt(4.0 * EIGEN_PI / 3000.0) * radius;
-	Eigen::Matrix3Xd positions(3, 6000), normals(3, 6000);
-	positions << sample.positions, sample.positions.colwise() + Eigen::Vector3d(2.0 * radius + 0.5 * spacing, 0.0, 0.0);
+	request.surface               = "sphere";
+	request.points                = 3000;
+	const auto            sample  = samples::generate(request);
+	const Eigen::Vector3d center  = sample.positions.rowwise().mean();
+	const double          radius  = (sample.positions.colwise() - center).colwise().norm().mean();
+	const double          spacing = std::sqrt(4.0 * EIGEN_PI / 3000.0) * radius;
+	Eigen::Matrix3Xd      positions(3, 6000), normals(3, 6000);
+	positions << sample.positions,
+		sample.positions.colwise() + Eigen::Vector3d(2.0 * radius + 0.5 * spacing, 0.0, 0.0);
 	normals << sample.normals, sample.normals;
 	const Eigen::VectorXd longest = Eigen::VectorXd::Constant(6000, 4.0 * spacing);
 	Index                 joining = 0;

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
 #include "estimated_field.h"
 #include "exact_field.h"
 #include "line_networks.h"
-#include "analytic_surfaces.h"
 
 namespace curvature_lines {
 namespace {
@@ -124,20 +124,21 @@ TEST(PositionFieldMesh, LinesOfAnEllipsoidKeepTheirFamily)
 {
 	const test::ExactCloud   exact = test::exactCloud(request("ellipsoid", 6000));
 	PositionFieldMeshOptions options;
-	options.targetVertices = 800;
-	options.keepLines      = true;
-	const LineNetwork               lines   = buildPositionFieldMesh(exact.cloud, exact.field, {}, options).lines;
+	options.targetVertices  = 800;
+	options.keepLines       = true;
+	const LineNetwork lines = buildPositionFieldMesh(exact.cloud, exact.field, {}, options).lines;
 	const samples::AnalyticSurface& surface = samples::surface("ellipsoid");
 	const double                    largest = (exact.field.k1 - exact.field.k2).maxCoeff();
 	Index                           judged = 0, wrong = 0, closed = 0;
 	for (Index l = 0; l < lines.lines(); ++l) {
 		closed += lines.closed[l];
 		for (Index v = lines.offsets[l]; v + 1 < lines.offsets[l + 1]; ++v) {
-			const Eigen::Vector3d       a = lines.vertices.col(v), along = lines.vertices.col(v + 1) - a;
+			const Eigen::Vector3d a = lines.vertices.col(v), along = lines.vertices.col(v + 1) - a;
 			const samples::SurfaceFrame frame = surface.frame(surface.project(a + 0.5 * along));
 			if (frame.k1 - frame.k2 < 0.1 * largest)
 				continue;
-			const double first = std::abs(along.dot(frame.d1)), second = std::abs(along.dot(frame.d2));
+			const double first  = std::abs(along.dot(frame.d1)),
+						 second = std::abs(along.dot(frame.d2));
 			++judged;
 			wrong += (lines.family[l] == 1) != (first > second);
 		}
@@ -162,10 +163,12 @@ TEST(PositionFieldMesh, LinesOfANoisyCloudDoNotCross)
 		PositionFieldMeshOptions options;
 		options.targetVertices = 800;
 		options.keepLines      = true;
-		const PositionFieldMeshResult result = buildPositionFieldMesh(cloud, estimated.field, {}, options);
+		const PositionFieldMeshResult result =
+			buildPositionFieldMesh(cloud, estimated.field, {}, options);
 		EXPECT_GT(result.lines.lines(), 40) << surface;
 		EXPECT_EQ(tests::crossingsWithinFamilies(result.lines), 0) << surface;
-		EXPECT_GT(result.scaffoldVertices, 1200) << surface; // about 740, thinned again and again, when it was folded
+		// about 740, thinned again and again, when it was folded
+		EXPECT_GT(result.scaffoldVertices, 1200) << surface;
 	}
 }
 

@@ -91,8 +91,11 @@ TEST(RimFit, PutsCornersWhereTheSidesMeet)
 				if (rim.isCorner(k)) {
 					const Vector3d p = found.scaffold.mesh.vertices.col(rim.at(k));
 					const Vector3d corner(
-						std::copysign(1.0, p.x()), 0.0, std::copysign(0.5 * double(EIGEN_PI), p.z()));
-					EXPECT_LT((p - corner).norm() / spacing, noise > 0.0 ? 1.2 : 0.6) << noise << ' ' << seed;
+						std::copysign(1.0, p.x()),
+						0.0,
+						std::copysign(0.5 * double(EIGEN_PI), p.z()));
+					EXPECT_LT((p - corner).norm() / spacing, noise > 0.0 ? 1.2 : 0.6)
+						<< noise << ' ' << seed;
 				}
 		}
 }

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "crease_recovery.h"
 #include "scaffold.h"
-#include "analytic_surfaces.h"
 
 namespace curvature_lines {
 namespace {
@@ -37,14 +37,14 @@ struct Expected {
 TEST(Scaffold, HasTheTopologyOfTheSurface)
 {
 	for (const Expected& e :
-		 {Expected{"torus", 4000, 0, 0},
-		  Expected{"sphere", 4000, 2, 0},
-		  Expected{"ellipsoid", 4000, 2, 0},
-		  Expected{"cylinder", 4000, 0, 2},
-		  Expected{"helicoid", 4000, 1, 1},
-		  Expected{"plane", 2000, 1, 1},
-		  Expected{"torus", 1600, 0, 0},
-		  Expected{"cube", 600, 2, 0}}) {
+	     {Expected{"torus", 4000, 0, 0},
+	      Expected{"sphere", 4000, 2, 0},
+	      Expected{"ellipsoid", 4000, 2, 0},
+	      Expected{"cylinder", 4000, 0, 2},
+	      Expected{"helicoid", 4000, 1, 1},
+	      Expected{"plane", 2000, 1, 1},
+	      Expected{"torus", 1600, 0, 0},
+	      Expected{"cube", 600, 2, 0}}) {
 		const Scaffold scaffold = buildScaffold(cloudOf(request(e.surface, e.points)));
 		EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), e.euler) << e.surface;
 		EXPECT_EQ(static_cast<int>(scaffold.mesh.rims().size()), e.rims) << e.surface;
@@ -146,7 +146,8 @@ TEST(CreaseRecovery, PutsMissingPointsInAndFlipsWhatCrosses)
 	for (Index k = 0; k < 9; ++k)
 		points.col(k) << k % 3, k / 3, k % 3 == 1 ? 0.3 : 0.0;
 	// Crease 1, 4, 7; vertex 4 is unused: the triangles run from 3 to 5 and to the corners.
-	std::vector<Triangle> triangles = {{0, 1, 3}, {1, 5, 3}, {1, 2, 5}, {3, 5, 7}, {3, 7, 6}, {5, 8, 7}};
+	std::vector<Triangle> triangles = {
+		{0, 1, 3}, {1, 5, 3}, {1, 2, 5}, {3, 5, 7}, {3, 7, 6}, {5, 8, 7}};
 	recoverCreaseEdges(points, {{1, 4}, {4, 7}}, triangles);
 	std::vector<Index>          copies;
 	const std::vector<Triangle> kept = manifoldPart(triangles, 9, copies);

@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scaffold.h"
 #include "analytic_surfaces.h"
+#include "scaffold.h"
 
 namespace curvature_lines {
 namespace {

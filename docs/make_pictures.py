@@ -93,7 +93,9 @@ def cleaning(path: Path) -> list[Path]:
     meshes.meshing_remove_selected_vertices()
     report = meshes.apply_coord_point_cloud_robust_denoising()
     render(after, meshes.current_mesh(), **style)
-    print(f"{path.name}: {outliers} of {len(framed)} points are outliers, the others moved {report['moved_rms']:.3g} (RMS)")
+    print(
+        f"{path.name}: {outliers} of {len(framed)} points are outliers, the others moved {report['moved_rms']:.3g} (RMS)"
+    )
     return [before, after]
 
 
@@ -132,7 +134,9 @@ def quads(path: Path) -> Path:
         meshes = loaded(path)
         forget_triangles(meshes)
     report = meshes.generate_surface_reconstruction_curvature_aligned()
-    print(f"{path.name}: {report['quads']} of {report['faces']} faces are quads, V - E + F = {report['euler_characteristic']}")
+    print(
+        f"{path.name}: {report['quads']} of {report['faces']} faces are quads, V - E + F = {report['euler_characteristic']}"
+    )
     view, up = VIEWS.get(path.name, (None, None))
     picture = OUT / f"{path.stem}_quads.png"
     render(picture, meshes.current_mesh(), view=view, up=up, size=PANEL)
@@ -154,7 +158,9 @@ def lines_of_curvature(path: Path, epsilon: float | None = None) -> Path:
     diagonal = meshes.current_mesh().bounding_box().diagonal()
     asked = bounded_to(diagonal, epsilon) if epsilon else {"target_vertices": TRACED_CROSSINGS}
     report = meshes.generate_curvature_lines(**asked)
-    print(f"{path.name}: {report['crossings']} crossings, {report['lines']} lines, {report['closed_lines']} closed, ends {[report[f'ends_at_{what}'] for what in ENDS]} at {ENDS}")
+    print(
+        f"{path.name}: {report['crossings']} crossings, {report['lines']} lines, {report['closed_lines']} closed, ends {[report[f'ends_at_{what}'] for what in ENDS]} at {ENDS}"
+    )
     view, up = VIEWS.get(path.name, (None, None))
     picture = OUT / f"{path.stem}_lines{epsilon or ''}.png"
     render(picture, meshes.mesh(cloud), meshes.current_mesh(), view=view, up=up, size=PANEL)

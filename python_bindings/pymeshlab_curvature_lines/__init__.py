@@ -46,7 +46,9 @@ def _load() -> type:
     # Before the import: a plugin in a host of another version would crash, not complain.
     host = version("pymeshlab")
     if host != _HOST and not host.startswith(_HOST + "."):
-        raise ImportError(f"pymeshlab_curvature_lines needs pymeshlab {_HOST}, not {host}: pip install 'pymeshlab>=2025.7,<2025.8'")
+        raise ImportError(
+            f"pymeshlab_curvature_lines needs pymeshlab {_HOST}, not {host}: pip install 'pymeshlab>=2025.7,<2025.8'"
+        )
     import pymeshlab
 
     # Already there after importlib.reload or the user's own load_plugin; the host refuses to load a file twice.

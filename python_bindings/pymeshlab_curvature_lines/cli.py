@@ -66,20 +66,50 @@ def parser() -> argparse.ArgumentParser:
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    options.add_argument("input", type=Path, nargs="+", metavar="INPUT", help="files that PyMeshLab reads, or folders of them")
+    options.add_argument(
+        "input", type=Path, nargs="+", metavar="INPUT", help="files that PyMeshLab reads, or folders of them"
+    )
     files = options.add_argument_group("files to write (folders, when there are several clouds)")
     files.add_argument("-o", "--output", type=Path, required=True, metavar="OUTPUT.obj", help="the mesh")
     files.add_argument("--lines", type=Path, metavar="LINES.obj", help="lines of curvature, about as dense as the mesh")
-    files.add_argument("--curvature", type=Path, metavar="POINTS.ply", help="the cleaned points with the curv_* attributes")
-    files.add_argument("--report", type=Path, metavar="REPORT.html", help="pictures, histograms, counts, parameters, versions; one file, opens offline")
+    files.add_argument(
+        "--curvature", type=Path, metavar="POINTS.ply", help="the cleaned points with the curv_* attributes"
+    )
+    files.add_argument(
+        "--report",
+        type=Path,
+        metavar="REPORT.html",
+        help="pictures, histograms, counts, parameters, versions; one file, opens offline",
+    )
     mesh = options.add_argument_group("the mesh")
-    mesh.add_argument("--target-vertices", type=int, default=0, metavar="N", help="about how many vertices; 0 (default): from the cloud")
-    mesh.add_argument("--epsilon", type=float, default=0, metavar="E", help="instead: chord error between lines, as a fraction of the bounding box's diagonal")
-    mesh.add_argument("--method", choices=METHODS, default="position-field", help="position-field (default): most quads, certain topology; traced-lines: as published")
-    mesh.add_argument("--triangulate", action="store_true", help="triangles instead of polygons; the output may then be any format")
+    mesh.add_argument(
+        "--target-vertices",
+        type=int,
+        default=0,
+        metavar="N",
+        help="about how many vertices; 0 (default): from the cloud",
+    )
+    mesh.add_argument(
+        "--epsilon",
+        type=float,
+        default=0,
+        metavar="E",
+        help="instead: chord error between lines, as a fraction of the bounding box's diagonal",
+    )
+    mesh.add_argument(
+        "--method",
+        choices=METHODS,
+        default="position-field",
+        help="position-field (default): most quads, certain topology; traced-lines: as published",
+    )
+    mesh.add_argument(
+        "--triangulate", action="store_true", help="triangles instead of polygons; the output may then be any format"
+    )
     mesh.add_argument("--close-holes", action="store_true", help="fill holes that are small against the mesh")
     cloud = options.add_argument_group("the cloud")
-    cloud.add_argument("--normals", choices=NORMALS, default="if-missing", help="when to estimate normals (default: if-missing)")
+    cloud.add_argument(
+        "--normals", choices=NORMALS, default="if-missing", help="when to estimate normals (default: if-missing)"
+    )
     cloud.add_argument("--no-outliers", action="store_true", help="keep every point")
     cloud.add_argument("--no-denoise", action="store_true", help="keep every point where it is")
     cloud.add_argument("--no-smoothing", action="store_true", help="keep the directions as estimated (traced-lines)")

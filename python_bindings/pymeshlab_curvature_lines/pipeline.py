@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from os import PathLike
 

@@ -47,9 +47,7 @@ def render(
         else:
             _add_cloud(plotter, layer)
         if (selected := layer.vertex_selection_array()).any():
-            plotter.add_points(
-                layer.vertex_matrix()[selected], color=_SELECTED, point_size=9, lighting=False
-            )
+            plotter.add_points(layer.vertex_matrix()[selected], color=_SELECTED, point_size=9, lighting=False)
     plotter.enable_anti_aliasing("ssaa")
     if framed is None:
         framed = np.concatenate([layer.vertex_matrix() for layer in layers])

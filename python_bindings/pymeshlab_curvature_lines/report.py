@@ -76,7 +76,9 @@ def write_report(
             title=escape(title),
             summary=escape(summary),
             pictures="".join(_figure(caption, _image(data)) for caption, data in pictures.items()),
-            histograms=_figure("Principal curvatures k1 (red) and k2 (blue), 1 / length; convex is positive", _histogram(*curvature))
+            histograms=_figure(
+                "Principal curvatures k1 (red) and k2 (blue), 1 / length; convex is positive", _histogram(*curvature)
+            )
             + _figure("How far points moved when the cloud was denoised, in its units", _histogram(moved)),
             tables="".join(_table(caption, rows) for caption, rows in tables.items()),
         ),
@@ -123,6 +125,7 @@ def _histogram(*series: np.ndarray) -> str:
 
 def _table(caption: str, rows: Mapping[str, object]) -> str:
     body = "".join(
-        f"<tr><th>{escape(name.replace('_', ' '))}</th><td>{escape(number(value))}</td></tr>\n" for name, value in rows.items()
+        f"<tr><th>{escape(name.replace('_', ' '))}</th><td>{escape(number(value))}</td></tr>\n"
+        for name, value in rows.items()
     )
     return f"<table>\n<caption>{escape(caption)}</caption>\n{body}</table>"

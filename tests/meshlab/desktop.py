@@ -190,4 +190,3 @@ class Desktop:
         desktop = Atspi.get_desktop(0)
         desktop.clear_cache()
         return list(Widget(desktop).children())
-

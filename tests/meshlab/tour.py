@@ -12,7 +12,7 @@ import sys
 import time
 from pathlib import Path
 
-from desktop import Desktop, Failure, wait_for
+from desktop import Desktop, Failure
 from window import MeshLab
 
 HERE = Path(__file__).parent
@@ -36,14 +36,24 @@ FILTERS = [
     ("cloud", POINTS, "Trace Lines of Curvature", {"Target number of crossings (0: none)": 400}, "lines"),
     ("lines of curvature", MESHES, QUAD_MESH, {"Split concave faces": False}, "quad_mesh"),
     ("cube", POINTS, "Extract Sharp Feature Lines", {"Smallest angle (degrees)": 40}, "sharp_features"),
-    ("cloud", POINTS, PIPELINE, {"Target number of vertices (0: automatic)": 500, "Keep intermediate layers": True}, "pipeline"),
+    (
+        "cloud",
+        POINTS,
+        PIPELINE,
+        {"Target number of vertices (0: automatic)": 500, "Keep intermediate layers": True},
+        "pipeline",
+    ),
     ("cloud", POINTS, "M-Weighted Curvature (Euler Least Squares)", {"Quality": "Shape Index"}, "m_weighted"),
     ("cloud", POINTS, "Curvature-Driven Projection", {"Points per vertex (1: move)": 4}, "projection"),
     ("cloud", POINTS, RAY_TRACING, {"Image file": OUT / "ray_traced.png", "Colour": "Curvature"}, "ray_tracing"),
 ]
 
 SAVED_AS_OBJ = ("lines", "quad_mesh", "sharp_features", "pipeline")
-SCRIPTS = {"cleaning": (2, "cloud", "ply"), "lines": (4, "lines of curvature", "obj"), "pipeline": (1, "curvature-aligned mesh", "obj")}
+SCRIPTS = {
+    "cleaning": (2, "cloud", "ply"),
+    "lines": (4, "lines of curvature", "obj"),
+    "pipeline": (1, "curvature-aligned mesh", "obj"),
+}
 
 
 def numbers(log: str) -> dict[str, float]:
@@ -136,7 +146,9 @@ def large(desktop: Desktop) -> dict:
         desktop.screenshot(picture)
         told = numbers(meshlab.log())
         still = max(after - before for (before, _), (after, _) in zip(moves, moves[1:]))
-        print(f"{name}: {told['seconds_total']:.1f} s, the bar moved {len(moves)} times and stood still {still:.1f} s at most")
+        print(
+            f"{name}: {told['seconds_total']:.1f} s, the bar moved {len(moves)} times and stood still {still:.1f} s at most"
+        )
         if len(moves) < 10:
             raise Failure(f"the progress bar showed {moves} only")
         results[picture] = told | {"progress_moves": len(moves), "progress_longest_still": still}

@@ -130,8 +130,6 @@ def axis_angle(a, b):
 
 def polygon_topology(polygons, vertices):
     """Euler characteristic, number of edges with one face, and with more than two, counted from scratch."""
-    sides = np.array(
-        [sorted(side) for polygon in polygons for side in zip(polygon, np.roll(polygon, -1))], dtype=int
-    )
+    sides = np.array([sorted(side) for polygon in polygons for side in zip(polygon, np.roll(polygon, -1))], dtype=int)
     edges, uses = np.unique(sides, axis=0, return_counts=True)
     return vertices - len(edges) + len(polygons), int(np.sum(uses == 1)), int(np.sum(uses > 2))

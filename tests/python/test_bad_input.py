@@ -235,7 +235,14 @@ def test_scale_of_the_model_with_m_weights(torus, scale):
 def test_scale_of_the_model(torus, scale):
     scaled = curvature(scale * torus["positions"], torus["normals"])
     plain = curvature(torus["positions"], torus["normals"])
-    for key, power in [("curv_k1", -1), ("curv_k2", -1), ("curv_error", -1), ("curv_scale", 1), ("curv_feature", 0), ("curv_confidence", 0)]:
+    for key, power in [
+        ("curv_k1", -1),
+        ("curv_k2", -1),
+        ("curv_error", -1),
+        ("curv_scale", 1),
+        ("curv_feature", 0),
+        ("curv_confidence", 0),
+    ]:
         np.testing.assert_allclose(scaled[key] / scale**power, plain[key], rtol=1e-4, atol=1e-5)
     meshes = layer(scale * torus["positions"], torus["normals"])
     lines = apply(meshes, TRACE)
@@ -300,7 +307,11 @@ def test_two_sheets_in_the_same_place(torus, name):
 
 def test_corrected_normals_of_two_sheets_in_the_same_place_stay_opposite(torus):
     meshes = layer(np.vstack([torus["positions"]] * 2), np.vstack([torus["normals"], -torus["normals"]]))
-    for name, parameters in [(CURVATURE, {"correct_normals": True}), (DENOISE, {}), (DENOISE, {"method": "Paper", "iterations": 3})]:
+    for name, parameters in [
+        (CURVATURE, {"correct_normals": True}),
+        (DENOISE, {}),
+        (DENOISE, {"method": "Paper", "iterations": 3}),
+    ]:
         apply(meshes, name, **parameters)
         front, back = np.split(meshes.current_mesh().vertex_normal_matrix(), 2)
         np.testing.assert_array_equal(front, -back)
@@ -389,7 +400,10 @@ def test_surfaces_of_points_some_of_which_are_nowhere(torus, value, tmp_path):
 @pytest.mark.parametrize("name", SURFACES)
 @pytest.mark.parametrize("scale, shift", [(1e-9, 0.0), (1e9, 0.0), (1.0, 1e6)])
 def test_surfaces_of_any_size_and_place(torus, name, scale, shift, tmp_path):
-    given, moved = layer(torus["positions"], torus["normals"]), layer(scale * torus["positions"] + shift, torus["normals"])
+    given, moved = (
+        layer(torus["positions"], torus["normals"]),
+        layer(scale * torus["positions"] + shift, torus["normals"]),
+    )
     options = {"image_file": str(tmp_path / "a.png"), "width": 60, "height": 40} if name == RAY_TRACE else {}
     a, b = given.apply_filter(name, **options), moved.apply_filter(name, **options)
     if name == RAY_TRACE:

@@ -16,6 +16,9 @@ def test_every_benchmark_loads():
     assert "curvature" in SCRIPTS
     done = subprocess.run(
         [sys.executable, "-c", LOAD_ALL, *SCRIPTS],
-        cwd=CHECKOUT / "benchmarks", capture_output=True, text=True, check=False,
+        cwd=CHECKOUT / "benchmarks",
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr

@@ -24,7 +24,9 @@ def vertex_header(file):
 
 
 def test_one_cloud_and_every_file(tmp_path):
-    done = run(tmp_path, CLOUD, "-o", "q.obj", "--lines", "l.obj", "--curvature", "c.ply", "--report", "r.html", "--quiet")
+    done = run(
+        tmp_path, CLOUD, "-o", "q.obj", "--lines", "l.obj", "--curvature", "c.ply", "--report", "r.html", "--quiet"
+    )
     assert done.returncode == 0, done.stderr
     assert re.search(r"^f \S+ \S+ \S+ \S+$", (tmp_path / "q.obj").read_text(), re.MULTILINE)
     assert re.search(r"^l \d+ \d+$", (tmp_path / "l.obj").read_text(), re.MULTILINE)

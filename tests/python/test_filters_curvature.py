@@ -156,8 +156,10 @@ def test_corrected_normals_are_better_and_directions_tangent_to_them(noisy_torus
     meshes = layer_of(noisy_torus)
     meshes.apply_filter(CURVATURE, scale_mode=mode, correct_normals=True)
     normals = meshes.current_mesh().vertex_normal_matrix()
-    errors = [np.arccos(np.clip(np.einsum("ij,ij->i", n, noisy_torus["normals"]), -1, 1))
-              for n in (noisy_torus["input_normals"], normals)]
+    errors = [
+        np.arccos(np.clip(np.einsum("ij,ij->i", n, noisy_torus["normals"]), -1, 1))
+        for n in (noisy_torus["input_normals"], normals)
+    ]
     assert rms(errors[1]) < 0.9 * rms(errors[0])
     d1, d2 = directions(meshes)
     assert np.max(np.abs(np.einsum("ij,ij->i", d1, normals))) < 1e-9
@@ -224,8 +226,9 @@ def test_points_without_estimate_are_zero_and_counted(torus):
 
 
 def test_duplicates_share_one_estimate(torus):
-    meshes = layer(np.vstack([torus["positions"], torus["positions"][:50]]),
-                   np.vstack([torus["normals"], torus["normals"][:50]]))
+    meshes = layer(
+        np.vstack([torus["positions"], torus["positions"][:50]]), np.vstack([torus["normals"], torus["normals"][:50]])
+    )
     report = meshes.apply_filter(CURVATURE)
     assert report["duplicates"] == 50
     single = layer_of(torus)

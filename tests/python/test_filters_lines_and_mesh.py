@@ -238,7 +238,12 @@ def test_density_parameters(torus, traced):
 
 @pytest.mark.parametrize(
     "parameters",
-    [{"projection": "Locally Optimal"}, {"projection": "Weighted Average"}, {"tolerance": 0.001}, {"smooth_directions": False}],
+    [
+        {"projection": "Locally Optimal"},
+        {"projection": "Weighted Average"},
+        {"tolerance": 0.001},
+        {"smooth_directions": False},
+    ],
 )
 def test_tracing_options_have_an_effect(torus, traced, parameters):
     meshes, report = retrace(torus, **parameters)
@@ -329,7 +334,9 @@ def test_mesh_finds_its_cloud_among_others(torus):
     found = meshes.apply_filter(MESH)
     meshes.set_current_mesh(2)
     named = meshes.apply_filter(MESH, point_cloud=1)
-    assert {k: v for k, v in found.items() if "seconds" not in k} == {k: v for k, v in named.items() if "seconds" not in k}
+    assert {k: v for k, v in found.items() if "seconds" not in k} == {
+        k: v for k, v in named.items() if "seconds" not in k
+    }
 
 
 # Pipeline
@@ -352,12 +359,20 @@ def test_pipeline_on_a_dirty_scan():
     # Small clouds get up to one vertex per four points, but no more than 500 vertices that way.
     assert 0.93 * 500 < report["vertices"] < 1.07 * 500
     assert rms(distances("torus", mesh.vertex_matrix())) < 0.0025 * analytic_surfaces.surface("torus").diagonal
-    assert {"seconds_curvature", "seconds_outliers", "seconds_denoising", "seconds_creases", "seconds_mesh"} <= set(report)
+    assert {"seconds_curvature", "seconds_outliers", "seconds_denoising", "seconds_creases", "seconds_mesh"} <= set(
+        report
+    )
 
 
 @pytest.mark.parametrize(
     "surface, points, euler, rims",
-    [("torus", 3000, 0, 0), ("sphere", 3000, 2, 0), ("cylinder", 4000, 0, 2), ("helicoid", 4000, 1, 1), ("cube", 6000, 2, 0)],
+    [
+        ("torus", 3000, 0, 0),
+        ("sphere", 3000, 2, 0),
+        ("cylinder", 4000, 0, 2),
+        ("helicoid", 4000, 1, 1),
+        ("cube", 6000, 2, 0),
+    ],
 )
 def test_pipeline_topology(surface, points, euler, rims):
     meshes = layer_of(generate(surface, points, seed=6))
@@ -419,7 +434,9 @@ def test_pipeline_keeps_traced_lines(torus):
     assert report["vertices"] == meshes.mesh(3).vertex_number()
 
 
-@pytest.mark.parametrize("choice, normals, estimated", [("If Missing", False, True), ("If Missing", True, False), ("Always", True, True)])
+@pytest.mark.parametrize(
+    "choice, normals, estimated", [("If Missing", False, True), ("If Missing", True, False), ("Always", True, True)]
+)
 def test_pipeline_estimates_normals(torus, choice, normals, estimated):
     meshes = layer(torus["positions"], torus["normals"] if normals else None)
     report = meshes.apply_filter(PIPELINE, estimate_normals=choice, **QUICK)
@@ -452,7 +469,13 @@ def test_pipeline_with_the_published_scale(noisy_torus):
 
 def test_chain_of_single_filters(noisy_torus):
     meshes = layer_of(noisy_torus)
-    for name, parameters in [(DENOISE, {}), (CURVATURE, {}), (SMOOTH, {}), (TRACE, {"target_vertices": 120}), (MESH, {})]:
+    for name, parameters in [
+        (DENOISE, {}),
+        (CURVATURE, {}),
+        (SMOOTH, {}),
+        (TRACE, {"target_vertices": 120}),
+        (MESH, {}),
+    ]:
         report = meshes.apply_filter(name, **parameters)
     mesh, _ = check_mesh(meshes, report)
     assert meshes.mesh_number() == 3 and report["nonmanifold_edges"] == 0

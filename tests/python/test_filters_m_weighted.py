@@ -68,7 +68,9 @@ def test_flipped_normals_turn_curvature_over(torus):
     assert np.allclose(values[0]["curv_error"], values[1]["curv_error"])
 
 
-@pytest.mark.parametrize("scalar, attribute_name", [("K1", "curv_k1"), ("K2", "curv_k2"), ("Confidence", "curv_confidence")])
+@pytest.mark.parametrize(
+    "scalar, attribute_name", [("K1", "curv_k1"), ("K2", "curv_k2"), ("Confidence", "curv_confidence")]
+)
 def test_scalar_becomes_quality(torus, scalar, attribute_name):
     meshes = layer_of(torus)
     meshes.apply_filter(M_WEIGHTED, scalar=scalar)

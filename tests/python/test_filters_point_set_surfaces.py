@@ -82,7 +82,9 @@ def test_projection_names_what_is_wrong(dense, torus):
 
 
 def picture(meshes, path, **parameters):
-    report = check_report(meshes.apply_filter(RAY_TRACE, image_file=str(path), **{**SMALL, **parameters}), "pixels", "hits")
+    report = check_report(
+        meshes.apply_filter(RAY_TRACE, image_file=str(path), **{**SMALL, **parameters}), "pixels", "hits"
+    )
     data = path.read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     assert (int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")) == (SMALL["width"], SMALL["height"])
@@ -107,7 +109,11 @@ def test_picture_of_a_torus(torus, tmp_path):
 def test_camera_given(torus, tmp_path):
     meshes = layer_of(torus)
     axis, _ = picture(
-        meshes, tmp_path / "axis.png", camera="Given", camera_position=np.array([0.0, 8.0, 0.0]), camera_up=np.array([0.0, 0.0, 1.0])
+        meshes,
+        tmp_path / "axis.png",
+        camera="Given",
+        camera_position=np.array([0.0, 8.0, 0.0]),
+        camera_up=np.array([0.0, 0.0, 1.0]),
     )
     away, _ = picture(
         meshes, tmp_path / "away.png", camera="Given", camera_position=np.array([0.0, 8.0, 0.0]),
@@ -137,7 +143,10 @@ def test_pictures_name_what_is_wrong(torus, tmp_path):
         ({"image_file": str(tmp_path / "a.png"), "width": 0}, "width"),
         ({"image_file": str(tmp_path / "a.png"), "lines": 1}, "no edges"),
         ({"image_file": str(tmp_path / "a.png"), "lines": 5}, "no such layer"),
-        ({"image_file": str(tmp_path / "a.png"), "camera": "Given", "camera_up": np.array([0.0, 0.0, 1.0])}, "camera_up"),
+        (
+            {"image_file": str(tmp_path / "a.png"), "camera": "Given", "camera_up": np.array([0.0, 0.0, 1.0])},
+            "camera_up",
+        ),
     ]:
         with pytest.raises(pymeshlab.PyMeshLabException, match=words):
             meshes.apply_filter(RAY_TRACE, **parameters)

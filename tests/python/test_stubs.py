@@ -31,7 +31,16 @@ def mypy(source, tmp_path):
     file = tmp_path / "user.py"
     file.write_text(source)
     # PyMeshLab itself has no types: what is its own stays unchecked.
-    command = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", str(tmp_path), str(file)]
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--ignore-missing-imports",
+        "--cache-dir",
+        str(tmp_path),
+        str(file),
+    ]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
@@ -59,4 +68,6 @@ def test_wrong_calls_do_not(tmp_path):
     errors = [line for line in done.stdout.splitlines() if ": error:" in line]
     first = HEAD.count("\n") + 1
     for number, (call, word) in enumerate(WRONG.items(), start=first):
-        assert any(f"user.py:{number}:" in line and word in line for line in errors), f"{call}: {done.stdout}{done.stderr}"
+        assert any(f"user.py:{number}:" in line and word in line for line in errors), (
+            f"{call}: {done.stdout}{done.stderr}"
+        )

@@ -59,7 +59,14 @@ def test_links_lead_somewhere(page):
             assert (file.parent / target).exists(), target
 
 
-def test_the_map_for_contributors_names_every_stage():
+def test_the_map_for_contributors_shows_rooms_and_units_as_they_are():
     page = (CHECKOUT / "docs/contributing.md").read_text()
-    for header in (CHECKOUT / "filter_curvature_lines/core").glob("*.h"):
-        assert f"`{header.stem}`" in page, header.stem
+    rows = re.findall(r"^\| `(\w+)` \|[^|]+\|([^|]*)\|([^|]+)\|$", page, re.MULTILINE)
+    link_lines = (CHECKOUT / "filter_curvature_lines/core/CMakeLists.txt").read_text()
+    uses = re.findall(r"^add_room\((\w+)(?: USES([\w ]+?))?(?: LIBRARIES.*)?\)", link_lines, re.MULTILINE)
+    assert len(uses) > 5
+    assert [(name, used.replace(",", "").split()) for name, used, _ in rows] == [(n, u.split()) for n, u in uses]
+    for name, _, units in rows:
+        headers = {file.stem for file in (CHECKOUT / "filter_curvature_lines/core" / name).glob("*.h")}
+        assert headers
+        assert set(re.findall(r"`(\w+)`", units)) == headers, name

@@ -5,6 +5,8 @@
 #include "polygon_layer.h"
 #include "polyline_layer.h"
 
+#include "quad_mesh.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -21,8 +23,8 @@ int defaultCloud(const MeshDocument& document)
 
 RichParameterList parameters(const MeshDocument& document)
 {
-	const QuadMeshOptions defaults;
-	RichParameterList     list;
+	const MeshFinishingOptions defaults;
+	RichParameterList          list;
 	list.addParam(RichMesh(
 		"point_cloud",
 		defaultCloud(document),
@@ -50,8 +52,8 @@ void requireLinesOnCloud(const LineNetwork& lines)
 
 FilterResults apply(const FilterContext& context)
 {
-	QuadMeshOptions options = meshOptions(context.parameters);
-	options.splitConcave    = context.parameters.flag("split_concave");
+	MeshFinishingOptions options = meshOptions(context.parameters);
+	options.splitConcave         = context.parameters.flag("split_concave");
 
 	const MeshModel& lineLayer  = currentLayer(context.document);
 	const int        cloudId    = context.parameters.layerId("point_cloud");

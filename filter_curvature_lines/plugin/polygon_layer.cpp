@@ -135,7 +135,7 @@ writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud
 
 void addMeshParameters(RichParameterList& list)
 {
-	const QuadMeshOptions defaults;
+	const MeshFinishingOptions defaults;
 	list.addParam(RichBool(
 		"triangulate",
 		defaults.triangulate,
@@ -148,9 +148,9 @@ void addMeshParameters(RichParameterList& list)
 		"Fill holes that are small against the mesh."));
 }
 
-QuadMeshOptions meshOptions(const Parameters& parameters)
+MeshFinishingOptions meshOptions(const Parameters& parameters)
 {
-	QuadMeshOptions options;
+	MeshFinishingOptions options;
 	options.triangulate = parameters.flag("triangulate");
 	options.closeHoles  = parameters.flag("close_holes");
 	return options;

@@ -7,7 +7,7 @@
 #include "filter_results.h"
 #include "parameters.h"
 
-#include "quad_mesh.h"
+#include "mesh_finishing.h"
 
 namespace curvature_lines {
 
@@ -17,7 +17,7 @@ writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud
 
 // What the filters that end in a mesh share: two parameters and the counts.
 void addMeshParameters(RichParameterList& list);
-QuadMeshOptions meshOptions(const Parameters& parameters);
+MeshFinishingOptions meshOptions(const Parameters& parameters);
 void reportMesh(FilterResults& results, const MeshTopology& topology);
 
 } // namespace curvature_lines

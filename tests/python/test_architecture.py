@@ -69,8 +69,8 @@ NOTHING_OF_THEIR_OWN = {
     "cloud/local_spacing",
     "creases/crease_curves",
     "curvature/curvature_field",
+    "line_network/line_network",
     "lines/line_crossing",
-    "lines/line_network",
     "point_set_surface/point_set_surface",
 }
 

@@ -2,7 +2,7 @@
 // section 6 makes every loop a face). SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "half_edge_mesh.h"
+#include "half_edge_graph.h"
 #include "voronoi_cells.h"
 
 namespace curvature_lines {

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "half_edge_mesh.h"
+#include "half_edge_graph.h"
 #include "line_intersections.h"
 
 namespace curvature_lines {

@@ -19,8 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
-constexpr double SmallHole = 12.0; // perimeter in median edges
-constexpr Index  Crumb     = 4;    // faces
+constexpr Index Crumb = 4; // faces
 
 Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadMeshResult& result)
 {
@@ -155,54 +154,14 @@ PolygonMesh separateFans(const Polygons& polygons)
 	return mesh;
 }
 
-// Fills rims that are short against the mesh with one polygon each.
-void closeSmallHoles(PolygonMesh& mesh)
-{
-	std::vector<Index> ahead(mesh.vertexCount(), -1); // along the rim, hole on the left
-	std::vector<std::pair<Index, Index>> sides;
-	std::vector<double>                  lengths;
-	for (Index f = 0; f < mesh.faceCount(); ++f) {
-		const NeighborLists::Row face = mesh.faces[f];
-		for (Index k = 0; k < face.size(); ++k) {
-			sides.emplace_back(face[k], face[(k + 1) % face.size()]);
-			lengths.push_back(
-				(mesh.vertices.col(sides.back().first) - mesh.vertices.col(sides.back().second))
-					.norm());
-		}
-	}
-	if (sides.empty())
-		return;
-	std::nth_element(lengths.begin(), lengths.begin() + lengths.size() / 2, lengths.end());
-	const double longest = SmallHole * lengths[lengths.size() / 2];
-	std::sort(sides.begin(), sides.end());
-	for (const auto& [a, b] : sides)
-		if (!std::binary_search(sides.begin(), sides.end(), std::make_pair(b, a)))
-			ahead[b] = a;
-
-	std::vector<char> visited(mesh.vertexCount(), 0);
-	for (Index start = 0; start < mesh.vertexCount(); ++start) {
-		Face   rim;
-		double perimeter = 0.0;
-		for (Index v = start; ahead[v] >= 0 && !visited[v]; v = ahead[v]) {
-			visited[v] = 1;
-			rim.push_back(v);
-			perimeter += (mesh.vertices.col(v) - mesh.vertices.col(ahead[v])).norm();
-		}
-		if (rim.size() < 3 || perimeter > longest)
-			continue;
-		mesh.faces.indices.insert(mesh.faces.indices.end(), rim.begin(), rim.end());
-		mesh.faces.offsets.push_back(static_cast<Index>(mesh.faces.indices.size()));
-	}
-}
-
 } // namespace
 
 QuadMeshResult buildQuadMesh(
-	const PointCloud&      cloud,
-	const VoronoiCells&    cells,
-	const LineNetwork&     lines,
-	const QuadMeshOptions& options,
-	const Progress&        progress)
+	const PointCloud&           cloud,
+	const VoronoiCells&         cells,
+	const LineNetwork&          lines,
+	const MeshFinishingOptions& options,
+	const Progress&             progress)
 {
 	QuadMeshResult          result;
 	const LineIntersections found =
@@ -223,11 +182,11 @@ QuadMeshResult buildQuadMesh(
 	PolygonSplitter splitter(result.mesh);
 	splitter.cutLargeFaces();
 	splitter.pairWithPentagons();
+	result.mesh = splitter.mesh();
 	if (options.splitConcave)
-		splitter.splitConcaveFaces();
+		result.mesh = withConvexFaces(result.mesh);
 	if (options.triangulate)
-		splitter.triangulate();
-	result.mesh     = splitter.mesh();
+		result.mesh = triangulated(result.mesh);
 	result.topology = topologyOf(result.mesh);
 	progress.report(1.0);
 	return result;

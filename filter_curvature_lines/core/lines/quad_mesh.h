@@ -1,23 +1,16 @@
-// The curvature-aligned quad-dominant mesh: faces between the lines of curvature (A09 section 6).
+// The curvature-aligned quad-dominant mesh from traced lines: faces between lines of curvature (A09 section 6).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "half_edge_mesh.h"
-#include "line_intersections.h"
+#include "line_network.h"
+#include "mesh_finishing.h"
+#include "progress.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 
-struct QuadMeshOptions {
-	bool triangulate  = false; // split every polygon into triangles
-	bool splitConcave = true;  // cut non-quads with a reflex corner into convex pieces (R07)
-	bool closeHoles   = false; // fill boundary loops that are small against the mesh
-};
-
-struct QuadMeshResult {
-	PolygonMesh  mesh;
-	MeshTopology topology;
-	Index        crossings = 0;
-	// of these, joined to another where three lines pass too close together
+struct QuadMeshResult : FinishedMesh {
+	// of the crossings, joined to another where three lines pass too close together
 	Index mergedCrossings = 0;
 	Index discardedLoops  = 0; // around holes, along rims, and tangled ones
 	Index tangledLoops = 0; // of these, that bound no disk: the mesh has a hole the cloud has not
@@ -28,10 +21,10 @@ struct QuadMeshResult {
 // join the same vertices, no face visits a vertex twice, and vertices where several fans meet are
 // split.
 QuadMeshResult buildQuadMesh(
-	const PointCloud&      cloud,
-	const VoronoiCells&    cells,
-	const LineNetwork&     lines,
-	const QuadMeshOptions& options  = {},
-	const Progress&        progress = {});
+	const PointCloud&           cloud,
+	const VoronoiCells&         cells,
+	const LineNetwork&          lines,
+	const MeshFinishingOptions& options  = {},
+	const Progress&             progress = {});
 
 } // namespace curvature_lines

@@ -5,7 +5,7 @@
 
 #include <unordered_set>
 
-#include "half_edge_mesh.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "half_edge_mesh.h"
+#include "half_edge_graph.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "half_edge_mesh.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 

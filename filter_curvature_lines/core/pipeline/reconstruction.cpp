@@ -9,6 +9,7 @@
 
 #include "even_sample.h"
 #include "line_spacing.h"
+#include "quad_mesh.h"
 #include "spatial_order.h"
 
 namespace curvature_lines {
@@ -125,7 +126,7 @@ void traceAndFill(
 		tracing,
 		progress.sub(0.3, 0.8, "Tracing lines"));
 	clock.book("tracing");
-	static_cast<QuadMeshResult&>(result.mesh) = buildQuadMesh(
+	static_cast<FinishedMesh&>(result.mesh) = buildQuadMesh(
 		result.cloud,
 		cells,
 		result.lines,

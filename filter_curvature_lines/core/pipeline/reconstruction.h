@@ -13,10 +13,11 @@
 #include "curvature_estimate.h"
 #include "denoising.h"
 #include "direction_smoothing.h"
+#include "line_network.h"
 #include "line_tracing.h"
+#include "mesh_finishing.h"
 #include "outlier_rejection.h"
 #include "position_field_mesh.h"
-#include "quad_mesh.h"
 #include "umbilics.h"
 
 namespace curvature_lines {
@@ -42,8 +43,8 @@ struct ReconstructionOptions {
 	// below 20 000 points, once the outliers are out. 0: all are used.
 	double pointsPerVertex = 24.0;
 	// PositionField: largest ratio of the line spacings in a place
-	double          anisotropy = 1.5;
-	QuadMeshOptions mesh;
+	double               anisotropy = 1.5;
+	MeshFinishingOptions mesh;
 	// PositionField: its lines as polylines; traced ones are always kept
 	bool keepLines = false;
 

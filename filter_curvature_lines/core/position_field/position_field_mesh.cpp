@@ -8,10 +8,10 @@
 #include <Eigen/Geometry>
 
 #include "feature_alignment.h"
-#include "polygon_splitting.h"
 #include "position_field_lines.h"
 #include "quad_cleanup.h"
 #include "rim_fit.h"
+#include "surface_arrangement.h"
 #include "surface_projection.h"
 
 namespace curvature_lines {
@@ -19,7 +19,6 @@ namespace curvature_lines {
 namespace {
 
 constexpr double countTolerance = 0.03; // beyond, the density is corrected once
-constexpr double closedRim      = 12.0; // edges of the mesh, as of traced lines
 
 struct Traced {
 	SurfaceCurves      curves;
@@ -78,7 +77,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	ScaffoldOptions         forScaffold = options.scaffold;
 	forScaffold.targetVertices          = options.targetVertices;
 	forScaffold.noise                   = options.noise;
-	forScaffold.closedRim               = options.mesh.closeHoles ? closedRim : 0.0;
+	forScaffold.closedRim               = options.mesh.closeHoles ? longestClosedHole : 0.0;
 	// A front over points that keep their noise folds, and lines on it turn back and cross.
 	const PointCloud fitted = onFittedSurface(cloud, curvature);
 	Scaffold         scaffold =
@@ -128,18 +127,12 @@ PositionFieldMeshResult buildPositionFieldMesh(
 
 	const std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
 	result.mesh                       = std::move(traced.arrangement.mesh);
-	if (options.mesh.splitConcave) {
-		PolygonSplitter splitter(result.mesh);
-		splitter.splitConcaveFaces();
-		result.mesh = splitter.mesh();
-	}
+	if (options.mesh.splitConcave)
+		result.mesh = withConvexFaces(result.mesh);
 	projectVertices(
 		cloud, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
-	if (options.mesh.triangulate) {
-		PolygonSplitter splitter(result.mesh);
-		splitter.triangulate();
-		result.mesh = splitter.mesh();
-	}
+	if (options.mesh.triangulate)
+		result.mesh = triangulated(result.mesh);
 	result.topology = topologyOf(result.mesh);
 	return result;
 }

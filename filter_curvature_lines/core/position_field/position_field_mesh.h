@@ -4,8 +4,8 @@
 #pragma once
 
 #include "line_network.h"
+#include "mesh_finishing.h"
 #include "position_field.h"
-#include "quad_mesh.h"
 #include "scaffold.h"
 
 namespace curvature_lines {
@@ -16,11 +16,11 @@ struct PositionFieldMeshOptions {
 	double          noise      = 0.0; // left in the cloud, a length
 	ScaffoldOptions scaffold;         // its target and noise are set from the above
 	PositionFieldOptions phases;
-	QuadMeshOptions      mesh;
+	MeshFinishingOptions mesh;
 	bool                 keepLines = false; // as polylines, beside the mesh
 };
 
-struct PositionFieldMeshResult : QuadMeshResult {
+struct PositionFieldMeshResult : FinishedMesh {
 	Index       scaffoldVertices = 0, scaffoldEuler = 0;
 	Index       singularTriangles = 0, lineEnds = 0;
 	Index       droppedComponents  = 0; // too small for a mesh, or without any line

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "disjoint_sets.h"
+#include "half_edge_graph.h"
 #include "polygons.h"
 
 namespace curvature_lines {

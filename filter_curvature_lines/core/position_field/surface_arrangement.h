@@ -4,7 +4,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "half_edge_mesh.h"
+#include "polygon_mesh.h"
 #include "surface_curves.h"
 
 namespace curvature_lines {

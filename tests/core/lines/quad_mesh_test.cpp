@@ -18,7 +18,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 QuadMeshResult
-build(const PointCloud& cloud, const LineNetwork& lines, const QuadMeshOptions& options = {})
+build(const PointCloud& cloud, const LineNetwork& lines, const MeshFinishingOptions& options = {})
 {
 	return buildQuadMesh(cloud, VoronoiCells(cloud.positions), lines, options);
 }
@@ -200,7 +200,7 @@ TEST(QuadMesh, HolesInTheCloudStayOpenUnlessClosed)
 	EXPECT_EQ(open.topology.eulerCharacteristic, 0);
 	EXPECT_EQ(open.discardedLoops, 2);
 
-	QuadMeshOptions options;
+	MeshFinishingOptions options;
 	options.closeHoles          = true;
 	const QuadMeshResult closed = build(cloud, lines, options);
 	expectManifold(closed);
@@ -225,9 +225,9 @@ TEST(QuadMesh, LargeFacesOfFlatRegionsStay)
 
 TEST(QuadMesh, TriangulationAndConcaveSplitKeepAreaAndTopology)
 {
-	const PointCloud  cloud = squareCloud(60, inDisk);
-	const LineNetwork lines = squareLines(11, inDisk);
-	QuadMeshOptions   options;
+	const PointCloud     cloud = squareCloud(60, inDisk);
+	const LineNetwork    lines = squareLines(11, inDisk);
+	MeshFinishingOptions options;
 	options.splitConcave           = false;
 	const QuadMeshResult plain     = build(cloud, lines, options);
 	options.splitConcave           = true;
@@ -323,7 +323,7 @@ TEST(QuadMesh, TooFewLinesGiveAnEmptyMesh)
 	NetworkBuilder cross(planeNormal());
 	cross.addSegment(1, {0.1, 0.5, 0}, {0.9, 0.5, 0}, 9)
 		.addSegment(2, {0.5, 0.1, 0}, {0.5, 0.9, 0}, 9);
-	QuadMeshOptions options;
+	MeshFinishingOptions options;
 	options.triangulate = options.closeHoles = true;
 	const QuadMeshResult result              = build(cloud, cross.lines(), options);
 	EXPECT_EQ(result.crossings, 1);

@@ -7,26 +7,6 @@
 
 namespace curvature_lines {
 
-// Polygons over shared vertices, counter-clockwise seen from outside.
-struct PolygonMesh {
-	Eigen::Matrix3Xd vertices, normals; // 3 x V
-	NeighborLists    faces;             // vertex loop of each face
-
-	Index vertexCount() const { return static_cast<Index>(vertices.cols()); }
-	Index faceCount() const { return faces.size(); }
-};
-
-// What a mesh is, counted; nothing is assumed.
-struct MeshTopology {
-	Index vertices = 0, edges = 0, faces = 0, triangles = 0, quads = 0, largestFace = 0;
-	Index boundaryEdges = 0, boundaryLoops = 0;
-	Index nonmanifoldEdges    = 0; // more than two faces, or two that disagree about its direction
-	Index nonmanifoldVertices = 0; // faces around it do not form one fan
-	Index components          = 0;
-	Index eulerCharacteristic = 0; // V - E + F over used vertices
-};
-MeshTopology topologyOf(const PolygonMesh& mesh);
-
 // A graph embedded in a surface. Half-edge 2e and 2e + 1 are the two sides of edge e.
 class HalfEdgeGraph {
 public:

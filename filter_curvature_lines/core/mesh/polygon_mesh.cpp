@@ -1,0 +1,122 @@
+// Sides of faces sorted so that those of one edge follow each other, and what that tells about the mesh.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "polygon_mesh.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "disjoint_sets.h"
+
+namespace curvature_lines {
+
+namespace {
+
+// One side of a face, named so that both faces of an edge sort together.
+struct FaceSide {
+	Index low, high, corner; // corner: position in mesh.faces.indices of the side's first vertex
+	bool  forward;           // from low to high
+	bool sameEdge(const FaceSide& o) const { return low == o.low && high == o.high; }
+};
+
+std::vector<FaceSide> sortedSides(const PolygonMesh& mesh)
+{
+	std::vector<FaceSide> sides;
+	sides.reserve(mesh.faces.indices.size());
+	for (Index f = 0; f < mesh.faceCount(); ++f) {
+		const NeighborLists::Row face = mesh.faces[f];
+		for (Index k = 0; k < face.size(); ++k) {
+			const Index a = face[k], b = face[(k + 1) % face.size()];
+			sides.push_back({std::min(a, b), std::max(a, b), mesh.faces.offsets[f] + k, a < b});
+		}
+	}
+	std::sort(sides.begin(), sides.end(), [](const FaceSide& a, const FaceSide& b) {
+		return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+	});
+	return sides;
+}
+
+std::vector<Index> nextCorners(const NeighborLists& faces)
+{
+	std::vector<Index> next(faces.indices.size());
+	for (Index f = 0; f < faces.size(); ++f)
+		for (Index c = faces.offsets[f]; c < faces.offsets[f + 1]; ++c)
+			next[c] = c + 1 == faces.offsets[f + 1] ? faces.offsets[f] : c + 1;
+	return next;
+}
+
+} // namespace
+
+MeshTopology topologyOf(const PolygonMesh& mesh)
+{
+	MeshTopology result;
+	result.faces                       = mesh.faceCount();
+	const std::vector<Index>& vertexOf = mesh.faces.indices;
+	const Index               corners  = static_cast<Index>(vertexOf.size());
+	const std::vector<Index>  next     = nextCorners(mesh.faces);
+
+	DisjointSets      components(mesh.vertexCount());
+	std::vector<char> used(mesh.vertexCount(), 0), tangled(mesh.vertexCount(), 0);
+	for (Index f = 0; f < result.faces; ++f) {
+		const Index sides = mesh.faces[f].size();
+		result.triangles += sides == 3;
+		result.quads += sides == 4;
+		result.largestFace = std::max(result.largestFace, sides);
+		for (Index v : mesh.faces[f]) {
+			used[v] = 1;
+			components.join(mesh.faces[f][0], v);
+		}
+	}
+
+	// Corners of a vertex that share a side belong to one fan; a rim is followed from fan to fan.
+	DisjointSets                fans(corners);
+	std::vector<FaceSide>       rim;
+	const std::vector<FaceSide> sides = sortedSides(mesh);
+	for (std::size_t i = 0, j; i < sides.size(); i = j) {
+		for (j = i + 1; j < sides.size() && sides[j].sameEdge(sides[i]); ++j) {
+			for (const Index v : {sides[i].low, sides[i].high}) {
+				const auto cornerAt = [&](const FaceSide& s) {
+					return vertexOf[s.corner] == v ? s.corner : next[s.corner];
+				};
+				fans.join(cornerAt(sides[i]), cornerAt(sides[j]));
+			}
+		}
+		++result.edges;
+		const bool loop = sides[i].low == sides[i].high;
+		const bool manifold =
+			j - i == 1 || (j - i == 2 && sides[i].forward != sides[i + 1].forward);
+		if (loop || !manifold) {
+			++result.nonmanifoldEdges;
+			tangled[sides[i].low] = tangled[sides[i].high] = 1;
+		}
+		if (j - i == 1)
+			rim.push_back(sides[i]);
+	}
+
+	std::vector<Index> fanCount(mesh.vertexCount(), 0);
+	for (Index c = 0; c < corners; ++c)
+		fanCount[vertexOf[c]] += fans.find(c) == c;
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
+		result.vertices += used[v];
+		result.components += used[v] && components.find(v) == v;
+		result.nonmanifoldVertices += fanCount[v] > 1 || tangled[v];
+	}
+
+	result.boundaryEdges = static_cast<Index>(rim.size());
+	DisjointSets       loops(result.boundaryEdges);
+	std::vector<Index> rimOfFan(corners, -1);
+	for (Index e = 0; e < result.boundaryEdges; ++e) {
+		for (const Index corner : {rim[e].corner, next[rim[e].corner]}) {
+			Index& other = rimOfFan[fans.find(corner)];
+			if (other >= 0)
+				loops.join(e, other);
+			other = e;
+		}
+	}
+	for (Index e = 0; e < result.boundaryEdges; ++e)
+		result.boundaryLoops += loops.find(e) == e;
+
+	result.eulerCharacteristic = result.vertices - result.edges + result.faces;
+	return result;
+}
+
+} // namespace curvature_lines

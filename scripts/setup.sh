@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes a checkout ready: system packages, .venv, MeshLab headers, one build, the Python package in .venv.
 # Safe to run again and quick when nothing is missing. scripts/demo.sh and scripts/test.sh begin with it.
+# `scripts/setup.sh --configure` stops before the build, for those who build in another way.
 # SPDX-License-Identifier: GPL-3.0-or-later
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,6 +16,11 @@ packages=(
 )
 
 fail() { echo "setup: $*" >&2; exit 1; }
+
+case "${1-}" in
+	"" | --configure) ;;
+	*) fail "unknown argument $1; the only one is --configure" ;;
+esac
 
 install_packages() {
 	command -v dpkg-query >/dev/null || return 0 # another distribution: configuring names what is missing
@@ -49,6 +55,7 @@ make_venv
 pip install -q 'scikit-build-core>=0.10' pymeshlab==2025.7.post1
 
 cmake --preset release >/dev/null || fail "configuring failed, see above"
+[ "${1-}" != --configure ] || exit 0
 cmake --build --preset release --parallel "$(nproc)"
 # The package takes the plugin out of the tree just built; nothing is compiled twice.
 pip install -q --no-build-isolation --config-settings build-dir=build/release '.[render,test]'

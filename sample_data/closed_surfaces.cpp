@@ -82,7 +82,7 @@ public:
 	SurfaceFrame frame(const Vector3d& q) const override
 	{
 		const Vector2d e   = radialDirection(q);
-		const bool     cap = std::abs(q.z()) > m_half;
+		const bool     cap = m_half == 0.0 || std::abs(q.z()) > m_half; // a sphere is all cap
 		// Parallels are d1 on the cylinder; going on with them over the caps keeps the choice smooth.
 		return frameOf(
 			(q - axisPoint(q)).normalized(), {-e.y(), e.x(), 0.0}, 1.0 / R, cap ? 1.0 / R : 0.0);

@@ -101,6 +101,17 @@ protected:
 	}
 };
 
+// Its equator, where the caps of a capsule of height 0 meet, is no cylinder.
+TEST(AnalyticSurfaces, ASphereIsRoundOnItsEquator)
+{
+	for (const Eigen::Vector3d& p :
+	     {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(0, 0, 1)}) {
+		const SurfaceFrame frame = surface("sphere").frame(p);
+		EXPECT_EQ(frame.k1, 1.0);
+		EXPECT_EQ(frame.k2, 1.0);
+	}
+}
+
 } // namespace
 
 TEST_P(EverySurface, FramesAreOrthonormalAndOrdered)

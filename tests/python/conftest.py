@@ -1,10 +1,8 @@
-# The plugin, loaded once, and the clouds that most tests use.
+# The clouds that most tests use; the helpers load the plugin.
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
 
-from helpers import generate, load_plugin
-
-load_plugin()
+from helpers import generate
 
 
 @pytest.fixture(scope="session")

@@ -23,18 +23,26 @@ PIPELINE = "generate_surface_reconstruction_curvature_aligned"
 M_WEIGHTED = "compute_curvature_m_weighted_per_vertex"
 PROJECT = "compute_curvature_driven_projection"
 RAY_TRACE = "save_ray_traced_point_set_image"
-ON_CLOUDS = [CURVATURE, OUTLIERS, DENOISE, SMOOTH, TRACE, PIPELINE, M_WEIGHTED, FEATURES]
 
 OK, BOUNDARY, TOO_FEW, UMBILIC, ISOLATED, INVALID = range(6)
 ATTRIBUTES = ["curv_k1", "curv_k2", "curv_confidence", "curv_error", "curv_scale", "curv_feature", "curv_status"]
 
 
 def load_plugin():
-    """That of the installed package, or the file that CURVATURE_LINES_PLUGIN names."""
+    """That of the installed package, or the file that CURVATURE_LINES_PLUGIN names. Returns the filters it brings."""
     if plugin := os.environ.get("CURVATURE_LINES_PLUGIN"):
+        before = set(pymeshlab.filter_list())
         pymeshlab.load_plugin(plugin)
-    else:
-        import pymeshlab_curvature_lines  # noqa: F401
+        return sorted(set(pymeshlab.filter_list()) - before)
+    import pymeshlab_curvature_lines
+
+    return list(pymeshlab_curvature_lines.filters())
+
+
+FILTERS = load_plugin()
+SURFACES = [PROJECT, RAY_TRACE]  # of points: they take the layers of clouds as parameters
+# All others but the one that takes lines, so that a new filter is among them
+ON_CLOUDS = [name for name in FILTERS if name not in (MESH, *SURFACES)]
 
 
 def generate(name, points, *, scanned=False, **options):

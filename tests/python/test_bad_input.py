@@ -8,11 +8,13 @@ import numpy as np
 import pymeshlab
 import pytest
 
+from filter_table import CONTRACT, Choice, Layer, Number, document
 from helpers import (
     ATTRIBUTES,
     CURVATURE,
     DENOISE,
     FEATURES,
+    FILTERS,
     INVALID,
     M_WEIGHTED,
     MESH,
@@ -22,6 +24,7 @@ from helpers import (
     PROJECT,
     RAY_TRACE,
     SMOOTH,
+    SURFACES,
     TRACE,
     attribute,
     attributes,
@@ -38,7 +41,6 @@ QUICK = {
     PIPELINE: {"denoise": False, "reject_outliers": False},
     RAY_TRACE: {"image_file": str(PICTURE), "width": 60, "height": 40},
 }
-SURFACES = [PROJECT, RAY_TRACE]
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +103,7 @@ def test_mostly_missing_normals_are_refused(torus, name):
     refused(layer(torus["positions"], normals), name, "ormals for point sets", **parameters)
 
 
-@pytest.mark.parametrize("name", [*ON_CLOUDS, *SURFACES, MESH])
+@pytest.mark.parametrize("name", FILTERS)
 def test_no_layer_at_all(name):
     with pytest.raises(pymeshlab.PyMeshLabException):
         pymeshlab.MeshSet().apply_filter(name)
@@ -133,7 +135,13 @@ OUT_OF_RANGE = [
     (TRACE, "max_spacing", [-1.0]),
     (TRACE, "tolerance", [0.0, 2.0]),
     (TRACE, "projection", [3]),
+    (TRACE, "method", [-1, 2]),
+    (TRACE, "stop_factor", [0.05, 1.1, float("nan")]),
+    (TRACE, "umbilic_ratio", [-0.1, 1.1]),
+    (PIPELINE, "method", [-1, 2]),
     (PIPELINE, "target_vertices", [-1]),
+    (PIPELINE, "anisotropy", [0.9, 10.1, float("nan")]),
+    (PIPELINE, "points_per_vertex", [-1.0, float("nan")]),
     (PIPELINE, "epsilon", [-1.0, 0.6]),
     (PIPELINE, "estimate_normals", [3]),
     (PIPELINE, "scale_mode", [2]),
@@ -156,6 +164,21 @@ OUT_OF_RANGE = [
     (RAY_TRACE, "camera", [2]),
     (RAY_TRACE, "field_of_view", [0.5, 151.0, float("nan")]),
 ]
+
+
+def test_every_number_and_enum_is_tried_out_of_its_range():
+    tried = {(name, parameter) for name, parameter, _ in OUT_OF_RANGE}
+    for name in FILTERS:
+        for parameter, kind in CONTRACT[name].parameters.items():
+            if isinstance(kind, (Number, Choice)):
+                assert (name, parameter) in tried
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_layers_that_are_not_there_are_named(name):
+    for parameter, kind in CONTRACT[name].parameters.items():
+        if isinstance(kind, Layer):
+            refused(document(name), name, parameter, **{parameter: 99})
 
 
 @pytest.mark.parametrize("name, parameter, values", OUT_OF_RANGE)

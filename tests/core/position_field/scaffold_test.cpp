@@ -207,19 +207,5 @@ TEST(Scaffold, BadInputMakesNoTriangle)
 	EXPECT_EQ(buildScaffold(few).mesh.triangleCount(), 0);
 }
 
-TEST(ManifoldPart, RefusesThirdTrianglesAndSplitsVertices)
-{
-	std::vector<Index>          copies;
-	const std::vector<Triangle> book = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
-	EXPECT_EQ(manifoldPart(book, 5, copies).size(), 2u);
-	EXPECT_TRUE(copies.empty());
-
-	const std::vector<Triangle> bowTie = {{0, 1, 2}, {0, 3, 4}};
-	const auto                  split  = manifoldPart(bowTie, 5, copies);
-	ASSERT_EQ(copies, std::vector<Index>{0});
-	EXPECT_EQ(split[1][0], 5);
-	EXPECT_EQ(TriangleMesh(Eigen::Matrix3Xd::Random(3, 6), split).rims().size(), 2u);
-}
-
 } // namespace
 } // namespace curvature_lines

@@ -1,0 +1,44 @@
+// Triangulations of exact surfaces with the crosses of their principal directions, as the stages of the position field
+// take them.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <numeric>
+
+#include "cross_field.h"
+#include "triangulated_surfaces.h"
+
+namespace curvature_lines::test {
+
+struct CrossedSurface {
+	TriangulatedSurface surface;
+	Scaffold            scaffold;
+	CurvatureField      curvature; // exact
+	CrossField          field;
+};
+
+inline CrossedSurface crossed(TriangulatedSurface surface)
+{
+	CrossedSurface result;
+	const Index    n     = surface.size();
+	result.scaffold.mesh = surface.mesh;
+	result.scaffold.source.resize(n);
+	std::iota(result.scaffold.source.begin(), result.scaffold.source.end(), 0);
+	result.scaffold.creaseEdge.assign(surface.mesh.edgeCount(), 0);
+	result.curvature.k1 = surface.truth.k1;
+	result.curvature.k2 = surface.truth.k2;
+	result.curvature.d1 = surface.truth.d1;
+	result.curvature.d2 = surface.truth.d2;
+	result.curvature.error.setZero(n);
+	result.curvature.status.assign(n, PointStatus::Ok);
+	DirectionGuide guide;
+	guide.normals    = surface.truth.normals;
+	guide.directions = surface.truth.d1;
+	guide.weights.setConstant(n, 1.0);
+	guide.onCrease.assign(n, 0);
+	result.field   = smoothCrossField(surface.mesh, guide);
+	result.surface = std::move(surface);
+	return result;
+}
+
+} // namespace curvature_lines::test

@@ -44,14 +44,10 @@ PARTS_OF_A_STAGE = {
     "lines/surface_flow": "lines/line_tracing",
     "mesh/polygons": "lines/quad_mesh",
     "mesh/rim_cleanup": "mesh/quad_cleanup",
-    "mesh/triangle_mesh": "position_field/scaffold",
     "point_set_surface/control_neighborhood": "point_set_surface/curvature_driven_projection",
     "point_set_surface/moving_least_squares": "point_set_surface/ray_tracing",
     "position_field/crease_recovery": "position_field/scaffold",
-    "position_field/cross_field": "position_field/position_field_mesh",
     "position_field/feature_alignment": "position_field/position_field_mesh",
-    "position_field/line_density": "position_field/position_field_mesh",
-    "position_field/position_field": "position_field/position_field_mesh",
     "position_field/position_field_lines": "position_field/position_field_mesh",
     "position_field/rims": "position_field/rim_fit",
 }
@@ -59,10 +55,6 @@ PARTS_OF_A_STAGE = {
 TESTED_FROM_PYTHON = {"point_set_surface/surface_picture": "test_filters_point_set_surfaces"}
 # Units with next to nothing that could be wrong by itself: results without functions, interfaces, a few short loops.
 NOTHING_OF_THEIR_OWN = {
-    "base/box_minimization",
-    "base/disjoint_sets",
-    "base/quantile",
-    "base/robust_kernel",
     "base/simd_block",
     "cleaning/outlier_result",
     "cloud/gate_normals",

@@ -1,160 +1,65 @@
 # How well, and how fast, our filters reject outliers and denoise, beside what we hold them to and beside other tools
 # on the same clouds.
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes benchmarks/results/cleaning.md. With names of experiments as arguments: only these, to the screen."""
-
 from __future__ import annotations
 
-import sys
-import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-import comparison
-import experiments
-import measures
-from cleaning_clouds import (
+from clouds.cleaning import (
     EDGE_ZONE,
-    PLANE_FIT_NEIGHBORS,
     SMOOTH_NORMALS_NEIGHBORS,
     Cloud,
-    denoising_figures,
     grooved,
-    part_selection_figures,
     quarters_alone,
-    ratio_figures,
     sampled,
-    selection_figures,
     uneven,
     with_clean_mesh,
 )
-from comparison import Case, Column, Figures, Method, Outcome, Target, number, one, verdict
-from experiments import Settings
-from fresh_process import cost_of
-from peers.cgal_cleaning import bilateral_smoothing, jet_smoothing, removed_outliers
-from peers.cleaned import Moved, Selection
-from peers.meshlab_cleaning import apss_projection, local_outlier_probabilities
-from peers.open3d_outliers import open3d_version, radius_outliers, statistical_outliers
+from clouds.generated import PLANE_FIT_NEIGHBORS
+from clouds.scans import LARGE_SCAN, found, oriented_vertices
+from figures.cleaning import denoising_figures, part_selection_figures, ratio_figures, selection_figures
+from harness.command_line import Benchmark, Settings, main
+from harness.comparison import Case, Comparison, Figures, Method, Outcome, methods_of
+from harness.fresh_process import cost_of
+from harness.our_filters import run_filter
+from harness.report import markdown_table, progress
+from harness.results import Moved, Selection
+from harness.shared import DENOISE, OUTLIERS
+from harness.verdicts import Target, number, verdict
+from peers.cleaning_columns import CRASHING, moving_columns, selecting_columns
+from peers.open3d_outliers import open3d_version
 from peers.programs import cgal_version
 
-OUTLIERS = "compute_selection_point_cloud_outliers_by_curvature"
-DENOISE = "apply_coord_point_cloud_robust_denoising"
 TIMED_RUNS = 3
-LARGE_SCAN = "dragon_vrip.ply"
+UNEVEN_POINTS = 20000
+NOISY_FANDISK = "fandisk_noise0.3.obj", "fandisk_clean.obj"
+NOISY_TWELVE = "twelve_impulsive0.5.obj", "twelve_clean.obj"
 
-Result = Selection | Moved
+BENCHMARK = Benchmark("cleaning", "Cleaning", options=("quick", "peers"), data=f"{LARGE_SCAN} and the noisy meshes are")
 
 
 def our_selection(cloud: Cloud) -> Selection:
-    meshes = measures.layer(cloud.positions, cloud.normals)
-    start = time.perf_counter()
-    meshes.apply_filter(OUTLIERS)
-    return Selection(meshes.current_mesh().vertex_selection_array(), time.perf_counter() - start)
+    ran = run_filter(OUTLIERS, cloud.positions, cloud.normals)
+    return Selection(ran.selected, ran.seconds)
 
 
 def our_denoising(cloud: Cloud) -> Moved:
-    meshes = measures.layer(cloud.positions, cloud.normals)
-    start = time.perf_counter()
-    meshes.apply_filter(DENOISE)
-    return Moved(meshes.current_mesh().vertex_matrix(), time.perf_counter() - start)
+    ran = run_filter(DENOISE, cloud.positions, cloud.normals)
+    return Moved(ran.vertices, ran.seconds)
 
 
-def loop_at(probability: float) -> Method:
-    return lambda cloud: local_outlier_probabilities(cloud.positions, probability, 32)
-
-
-def statistical_at(neighbors: int, deviations: float) -> Method:
-    return lambda cloud: statistical_outliers(cloud.positions, neighbors, deviations)
-
-
-def radius_at(neighbors: int, spacings: float) -> Method:
-    return lambda cloud: radius_outliers(cloud.positions, neighbors, spacings * cloud.spacing)
-
-
-def true_share_removed(cloud: Cloud) -> Selection:
-    return removed_outliers(cloud.positions, cloud.normals, 24, 100.0 * float(cloud.outlier.mean()))
-
-
-def selecting_peers() -> list[Column]:
-    columns = [
-        one("LoOP, default", loop_at(0.8)),
-        one("LoOP, 0.5", loop_at(0.5)),
-        one("CGAL remove_outliers, true share", true_share_removed),
-    ]
-    if open3d_version() is None:
-        return columns
-    return [
-        *columns,
-        one("Open3D statistical 20, 2", statistical_at(20, 2.0)),
-        Column(
-            "best of Open3D statistical",
-            {f"Open3D statistical {k}, {d:g}": statistical_at(k, d) for k, d in ((20, 2.0), (20, 0.5), (30, 1.0))},
-        ),
-        one("Open3D radius 16, 3.5 h", radius_at(16, 3.5)),
-    ]
-
-
-def apss_at(scale: float, smooth_normals: bool = False) -> Method:
-    return lambda cloud: apss_projection(
-        cloud.positions, cloud.smooth_normals if smooth_normals else cloud.normals, scale
-    )
-
-
-def apss_in_one_layer(cloud: Cloud) -> Moved | None:
-    return apss_projection(cloud.positions, cloud.normals, 2, one_layer=True)
-
-
-def jet_at(neighbors: int) -> Method:
-    return lambda cloud: jet_smoothing(cloud.positions, cloud.normals, neighbors)
-
-
-def bilateral_at(neighbors: int, degrees: float, iterations: int, smooth_normals: bool = False) -> Method:
-    return lambda cloud: bilateral_smoothing(
-        cloud.positions, cloud.smooth_normals if smooth_normals else cloud.normals, neighbors, degrees, iterations
-    )
-
-
-def moving_peers() -> list[Column]:
-    return [
-        one("APSS, as it comes", apss_in_one_layer),
-        one("APSS 2", apss_at(2)),
-        Column("best APSS", {"APSS 2": apss_at(2)} | {f"APSS {s}": apss_at(s, smooth_normals=True) for s in (4, 12)}),
-        one("CGAL jet 24", jet_at(24)),
-        Column("best CGAL jet", {f"CGAL jet {k}": jet_at(k) for k in (24, 50, 100, 400, 800)}),
-        one("CGAL bilateral 24, 30°, 1", bilateral_at(24, 30.0, 1)),
-        Column(
-            "best CGAL bilateral",
-            {
-                "CGAL bilateral 24, 30°, 1": bilateral_at(24, 30.0, 1),
-                "CGAL bilateral 100, 30°, 1": bilateral_at(100, 30.0, 1, smooth_normals=True),
-                "CGAL bilateral 100, 15°, 3": bilateral_at(100, 15.0, 3, smooth_normals=True),
-            },
-        ),
-    ]
-
-
-def compare(
-    cases: list[Case],
-    settings: Settings,
-    ours: Method,
-    peers: Callable[[], list[Column]] | None,
-    figures: Callable[[Cloud, Result], Figures],
-) -> str:
-    return comparison.compare(
-        [case for case in cases if case.quick or not settings.quick],
-        settings.seeds,
-        ours,
-        peers() if peers and settings.peers else [],
-        figures,
-        lambda name: name.endswith(("recall", "precision")),
-    )
+SELECTING = Comparison(our_selection, selecting_columns, lambda name: name.endswith(("recall", "precision")))
+MOVING = Comparison(our_denoising, moving_columns)
 
 
 def selected(recall: tuple[float, float], precision: tuple[float, float] = (0.98, 0.99)) -> dict[str, Target]:
     return {"recall": Target(*recall, at_least=True), "precision": Target(*precision, at_least=True)}
 
 
+@BENCHMARK.experiment("far", "Far outliers")
 def far_outliers(settings: Settings) -> str:
     torus = selected((0.96, 0.98))
     cube = {"recall": Target(0.94, 0.97, at_least=True), "inliers selected, %": Target(0.1, 0.05)}
@@ -163,11 +68,10 @@ def far_outliers(settings: Settings) -> str:
         Case("torus 20 000, 0.25 %, 10 % far", sampled("torus", 20000, 0.0025, far=0.1), torus),
         Case("cube 60 000, 0.5 %, 5 % far", sampled("cube", 60000, 0.005, far=0.05), cube),
     ]
-    return "Outliers anywhere in 1.2 times the box.\n\n" + compare(
-        cases, settings, our_selection, selecting_peers, selection_figures
-    )
+    return "Outliers anywhere in 1.2 times the box.\n\n" + SELECTING.table(cases, settings, selection_figures)
 
 
+@BENCHMARK.experiment("near", "Outliers in clusters near the surface")
 def near_outliers(settings: Settings) -> str:
     recalls = {0.0: (0.99, 1.0), 0.0025: (0.84, 0.92), 0.005: (0.88, 0.92)}
     cases = [
@@ -179,11 +83,12 @@ def near_outliers(settings: Settings) -> str:
         )
         for noise, recall in recalls.items()
     ]
-    return "Clusters of 12 points, 3 to 8 noise units off the surface.\n\n" + compare(
-        cases, settings, our_selection, selecting_peers, selection_figures
+    return "Clusters of 12 points, 3 to 8 noise units off the surface.\n\n" + SELECTING.table(
+        cases, settings, selection_figures
     )
 
 
+@BENCHMARK.experiment("clean", "Selected though there are no outliers")
 def clean(settings: Settings) -> str:
     targets = {"inliers selected, %": Target(0.1, 0.0)}
     cases = [
@@ -195,9 +100,8 @@ def clean(settings: Settings) -> str:
         Case(f"sheet 20 000, groove of {width:g} spacings", grooved(20000, width), targets, quick=width == 3.0)
         for width in (3.0, 6.0)
     ]
-    return (
-        "Groove: a Gaussian valley, as deep as its half width at 1/e, that width in spacings.\n\n"
-        + compare(cases, settings, our_selection, selecting_peers, selection_figures)
+    return "Groove: a Gaussian valley, as deep as its half width at 1/e, that width in spacings.\n\n" + SELECTING.table(
+        cases, settings, selection_figures
     )
 
 
@@ -206,12 +110,11 @@ def denoised(ratio: tuple[float, float], **more: tuple[float, float]) -> dict[st
     return {"RMS ratio": Target(*ratio), **{name: Target(*bounds) for name, bounds in more.items()}, **common}
 
 
+@BENCHMARK.experiment("smooth", "Denoising of smooth surfaces")
 def smooth(settings: Settings) -> str:
     ratios = {0.0025: (0.105, 0.08), 0.005: (0.09, 0.07), 0.01: (0.09, 0.065), 0.02: (0.11, 0.08)}
     cases = [
-        Case(
-            f"torus 20 000, {100 * noise:g} %", sampled("torus", 20000, noise), denoised(ratio), quick=noise == 0.005
-        )
+        Case(f"torus 20 000, {100 * noise:g} %", sampled("torus", 20000, noise), denoised(ratio), quick=noise == 0.005)
         for noise, ratio in ratios.items()
     ]
     cases += [
@@ -223,9 +126,10 @@ def smooth(settings: Settings) -> str:
             quick=True,
         ),
     ]
-    return compare(cases, settings, our_denoising, moving_peers, denoising_figures)
+    return MOVING.table(cases, settings, denoising_figures)
 
 
+@BENCHMARK.experiment("sharp", "Denoising of sharp edges")
 def sharp(settings: Settings) -> str:
     dense = {"edges, RMS ratio": Target(0.27, 0.18), "elsewhere, RMS ratio": Target(0.10, 0.08)}
     common = {"signed mean": Target(0.03, 0.03), "CV of spacing": Target(0.56, 0.56)}
@@ -238,103 +142,93 @@ def sharp(settings: Settings) -> str:
         Case("cube 60 000, 0.5 %", sampled("cube", 60000, 0.005), dense | common),
         Case("cube 600, 0.5 %", as_one, {"RMS ratio": Target(0.7, 0.45)} | common, quick=True),
     ]
-    return f"Edges: foot points within {100 * EDGE_ZONE:g} % of the side from an edge.\n\n" + compare(
-        cases, settings, our_denoising, moving_peers, denoising_figures
+    return f"Edges: foot points within {100 * EDGE_ZONE:g} % of the side from an edge.\n\n" + MOVING.table(
+        cases, settings, denoising_figures
     )
 
 
+def uneven_table(settings: Settings, ours: Method, share: float, figures: Callable[[Cloud, Any], Figures]) -> str:
+    """``share`` of outliers; figures of the parts of the whole cloud, beside those of the parts cleaned alone."""
+    whole, alone = Outcome(), Outcome()
+    for seed in settings.seeds:
+        progress(f"uneven cloud, {100 * share:g} % outliers, seed {seed}")
+        cloud = uneven(UNEVEN_POINTS, share)(seed)
+        whole.add(figures(cloud, ours(cloud)))
+        alone.add({name: value for part in quarters_alone(cloud) for name, value in figures(part, ours(part)).items()})
+    rows = []
+    for name in whole.names():
+        together, apart = whole.median(name), alone.median(name)
+        rows.append([name, number(together), number(apart), number(together / apart if apart else np.nan)])
+    return markdown_table(["figure", "whole cloud", "quarter alone", "whole / alone"], rows)
+
+
+@BENCHMARK.experiment("uneven", "Noise and density that vary tenfold")
 def uneven_cloud(settings: Settings) -> str:
-    points = 20000
-
-    def table(ours: Method, share: float, figures: Callable[[Cloud, Result], Figures]) -> str:
-        rows, whole, alone = [], Outcome(), Outcome()
-        for seed in settings.seeds:
-            print(f"uneven cloud, {100 * share:g} % outliers, seed {seed}", file=sys.stderr)
-            cloud = uneven(points, share)(seed)
-            whole.add(figures(cloud, ours(cloud)))
-            alone.add({name: value for part in quarters_alone(cloud) for name, value in figures(part, ours(part)).items()})
-        for name in whole.names():
-            together, apart = whole.median(name), alone.median(name)
-            rows.append([name, number(together), number(apart), number(together / apart if apart else np.nan)])
-        return measures.markdown_table(["figure", "whole cloud", "quarter alone", "whole / alone"], rows)
-
     return (
-        f"Torus of some {points} points along which the noise grows from 0.1 to 1 % of the diagonal and, a quarter turn "
+        f"Torus of some {UNEVEN_POINTS} points along which the noise grows from 0.1 to 1 % of the diagonal and, a quarter turn "
         "off, the density falls tenfold. The same points in the middle of each quarter, cleaned with the whole cloud and "
         "with the quarter alone. First 5 % far outliers, then denoising without outliers.\n\n"
-        + table(our_selection, 0.05, part_selection_figures)
+        + uneven_table(settings, our_selection, 0.05, part_selection_figures)
         + "\n"
-        + table(our_denoising, 0.0, ratio_figures)
+        + uneven_table(settings, our_denoising, 0.0, ratio_figures)
     )
 
 
+@BENCHMARK.experiment("meshes", "Noisy meshes with known truth")
 def meshes_with_truth(settings: Settings) -> str:
-    if settings.data is None:
+    data = settings.data
+    if data is None or not found(data, *NOISY_FANDISK, *NOISY_TWELVE):
         return "Skipped: `--data FOLDER` says where the meshes are.\n"
-    folder = settings.data
-
-    def fandisk(_: int) -> Cloud:
-        return with_clean_mesh(folder / "fandisk_noise0.3.obj", folder / "fandisk_clean.obj")
-
-    def twelve(_: int) -> Cloud:
-        return with_clean_mesh(folder / "twelve_impulsive0.5.obj", folder / "twelve_clean.obj", impulsive=True)
-
+    fandisk, twelve = ([data / name for name in names] for names in (NOISY_FANDISK, NOISY_TWELVE))
+    denoised = Case("fandisk, 0.3 edges", lambda _: with_clean_mesh(*fandisk), one_seed=True, quick=True)
+    selected = Case(
+        "twelve, impulses on half", lambda _: with_clean_mesh(*twelve, impulsive=True), one_seed=True, quick=True
+    )
     return (
         "Vertices of noisy meshes, distances to the clean mesh. The half of Twelve's vertices that impulses displaced "
         "are its outliers.\n\n"
-        + compare(
-            [Case("fandisk, 0.3 edges", fandisk, one_seed=True, quick=True)],
-            settings,
-            our_denoising,
-            moving_peers,
-            denoising_figures,
-        )
+        + MOVING.table([denoised], settings, denoising_figures)
         + "\n"
-        + compare(
-            [Case("twelve, impulses on half", twelve, one_seed=True, quick=True)],
-            settings,
-            our_selection,
-            selecting_peers,
-            selection_figures,
-        )
+        + SELECTING.table([selected], settings, selection_figures)
     )
 
 
 def time_table(
-    filter_name: str, target: Target, peers: Callable[[], list[Column]], settings: Settings, clouds: dict[str, Cloud]
+    filter_name: str, target: Target, comparison: Comparison, settings: Settings, clouds: dict[str, Cloud]
 ) -> str:
-    columns = [column for column in peers() if column.title != "APSS, as it comes"] if settings.peers else []
-    timed = {name: run for column in columns for name, run in column.methods.items()}
+    peers = methods_of(comparison.peers()) if settings.peers else {}
+    peers.pop(CRASHING, None)
     rows = []
     for label, cloud in clouds.items():
-        print(f"time: {filter_name}, {label}", file=sys.stderr)
-        cost = min(cost_of(filter_name, cloud.positions, cloud.normals) for _ in range(TIMED_RUNS))
+        progress(f"time: {filter_name}, {label}")
+        cost = cost_of(filter_name, cloud.positions, cloud.normals, TIMED_RUNS)
         row = [label, f"{cost.wall:.0f}", f"{cost.processor:.0f}", f"{cost.megabytes:.0f}", *verdict(cost.wall, target)]
-        for run in timed.values():
+        for run in peers.values():
             result = run(cloud)
             ratio = None if result is None else 1e6 * result.seconds / len(cloud.positions) / cost.wall
             row.append("crash" if ratio is None else f"{ratio:.2f}")
         rows.append(row)
-    header = ["cloud", "ours, µs per point", "processor, µs per point", "peak, MB", "must", "aim", "met", *timed]
-    return measures.markdown_table(header, rows)
+    header = ["cloud", "ours, µs per point", "processor, µs per point", "peak, MB", "must", "aim", "met", *peers]
+    return markdown_table(header, rows)
 
 
 def memory_rows(settings: Settings) -> str:
-    scan = None if settings.data is None else settings.data / LARGE_SCAN
-    if scan is None or not scan.exists():
+    if settings.data is None or not found(settings.data, LARGE_SCAN):
         return f"Peak memory on a large scan: skipped, no `{LARGE_SCAN}` (`--data FOLDER` says where it is).\n"
-    positions, normals = measures.oriented_vertices(scan)
+    positions, normals = oriented_vertices(settings.data / LARGE_SCAN)
     rows = []
     for label, filter_name in (("outliers", OUTLIERS), ("denoising", DENOISE)):
-        print(f"memory: {label}, {LARGE_SCAN}", file=sys.stderr)
+        progress(f"memory: {label}, {LARGE_SCAN}")
         cost = cost_of(filter_name, positions, normals)
-        rows.append([label, f"{cost.megabytes:.0f}", *verdict(cost.megabytes, Target(2048.0, 2048.0)), f"{cost.wall:.0f}"])
-    return (
-        f"On {len(positions)} points (`{LARGE_SCAN}`, vertices and vertex normals):\n\n"
-        + measures.markdown_table(["filter", "peak, MB", "must", "aim", "met", "µs per point"], rows)
+        rows.append(
+            [label, f"{cost.megabytes:.0f}", *verdict(cost.megabytes, Target(2048.0, 2048.0)), f"{cost.wall:.0f}"]
+        )
+    return f"On {len(positions)} points (`{LARGE_SCAN}`, vertices and vertex normals):\n\n" + markdown_table(
+        ["filter", "peak, MB", "must", "aim", "met", "µs per point"], rows
     )
 
 
+@BENCHMARK.experiment("time", "Time and memory")
 def time_and_memory(settings: Settings) -> str:
     sizes = (20000,) if settings.quick else (20000, 200000)
     dirty = {f"torus {n}, 0.25 %, 5 % far": sampled("torus", n, 0.0025, far=0.05)(1) for n in sizes}
@@ -343,29 +237,18 @@ def time_and_memory(settings: Settings) -> str:
         f"Wall clock per point (all threads: `processor`), seed 1, fastest of {TIMED_RUNS} fresh processes, peers of one; "
         "where `processor` is well below the wall clock times the threads, the machine was busy with other work. Peers "
         "as ratios to ours: above 1 they are slower. Peak memory above the host with the cloud loaded.\n\nOutliers:\n\n"
-        + time_table(OUTLIERS, Target(100.0, 40.0), selecting_peers, settings, dirty)
+        + time_table(OUTLIERS, Target(100.0, 40.0), SELECTING, settings, dirty)
         + "\nDenoising:\n\n"
-        + time_table(DENOISE, Target(150.0, 60.0), moving_peers, settings, noisy)
+        + time_table(DENOISE, Target(150.0, 60.0), MOVING, settings, noisy)
         + "\n"
         + ("" if settings.quick else memory_rows(settings))
     )
 
 
-EXPERIMENTS = {
-    "far": ("Far outliers", far_outliers),
-    "near": ("Outliers in clusters near the surface", near_outliers),
-    "clean": ("Selected though there are no outliers", clean),
-    "smooth": ("Denoising of smooth surfaces", smooth),
-    "sharp": ("Denoising of sharp edges", sharp),
-    "uneven": ("Noise and density that vary tenfold", uneven_cloud),
-    "meshes": ("Noisy meshes with known truth", meshes_with_truth),
-    "time": ("Time and memory", time_and_memory),
-}
-
-
+@BENCHMARK.introduction
 def introduction(settings: Settings) -> str:
     text = (
-        f"Our filters with default parameters. Medians of {'seed 1' if settings.quick else 'seeds 1 to 5'}. Input normals "
+        f"Our filters with default parameters. Medians of {settings.seeds_in_words}. Input normals "
         f"are planes fitted to {PLANE_FIT_NEIGHBORS} neighbours in the dirty cloud, their side the true one. Noise is a "
         "fraction of the surface's diagonal. Outliers count from three noise units (at least 0.25 % of the diagonal) off "
         "the true surface; nearer ones are in neither count. **RMS ratio**: distance to the true surface, after over "
@@ -393,12 +276,5 @@ def introduction(settings: Settings) -> str:
     return text
 
 
-def main() -> None:
-    parser = experiments.parser_of(EXPERIMENTS, __doc__, f"where {LARGE_SCAN} and the noisy meshes are")
-    given = experiments.parse(parser, EXPERIMENTS)
-    settings = Settings(quick=given.quick, peers=not given.without_peers, data=given.data)
-    experiments.report("cleaning", "Cleaning", introduction(settings), EXPERIMENTS, settings, given)
-
-
 if __name__ == "__main__":
-    main()
+    main(BENCHMARK)

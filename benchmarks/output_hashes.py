@@ -7,31 +7,28 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import sys
 import tempfile
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-CHECKOUT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(CHECKOUT / "tests" / "python"), str(CHECKOUT / "benchmarks")]
+import numpy as np
+import pymeshlab
 
-import helpers  # noqa: E402
-import numpy as np  # noqa: E402
-import pymeshlab  # noqa: E402
+from clouds.scans import loaded
+from harness.shared import MESHLAB_SAMPLES, helpers
 
-helpers.load_plugin()
-
-WHEEL = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
+Cloud = tuple[np.ndarray, np.ndarray]  # positions and normals, N x 3 each
+Step = tuple[str, dict]  # a filter and its parameters
 
 
-def generated(*arguments, **options):
-    cloud = helpers.generate(*arguments, **options)
+def generated(surface: str, points: int, **options) -> Cloud:
+    cloud = helpers.generate(surface, points, **options)
     return cloud["positions"], cloud["input_normals"]
 
 
-def scan(name: str, every: int = 1):
+def scan(name: str, every: int = 1) -> Cloud:
     """Vertices of a mesh that comes with PyMeshLab, without its faces; all, or one in `every`."""
-    meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(WHEEL / name))
+    meshes = loaded(MESHLAB_SAMPLES / name)
     if meshes.current_mesh().face_number():
         meshes.compute_normal_per_vertex()
     mesh = meshes.current_mesh()
@@ -50,7 +47,7 @@ CLOUDS = {
 }
 
 # Chains of filters, each on a layer of its own.
-CHAINS = {
+CHAINS: dict[str, list[Step]] = {
     "curvature": [(helpers.CURVATURE, {"correct_normals": True, "scalar": "Curvedness"})],
     "published_curvature": [(helpers.CURVATURE, {"scale_mode": "Paper", "correct_normals": True})],
     "ungated_curvature": [(helpers.CURVATURE, {"scale_mode": "Paper", "feature_gate": False})],
@@ -59,29 +56,45 @@ CHAINS = {
     "denoising": [(helpers.DENOISE, {})],
     "published_denoising": [(helpers.DENOISE, {"method": "Paper", "iterations": 10})],
     "conjugate_denoising": [
-        (helpers.DENOISE, {"method": "Paper", "iterations": 5, "optimizer": "Polak-Ribiere", "energy": "Squared", "neighbors": "Nearest"})
+        (
+            helpers.DENOISE,
+            {
+                "method": "Paper",
+                "iterations": 5,
+                "optimizer": "Polak-Ribiere",
+                "energy": "Squared",
+                "neighbors": "Nearest",
+            },
+        )
     ],
     "lines": [(helpers.SMOOTH, {}), (helpers.TRACE, {"target_vertices": 200}), (helpers.MESH, {})],
-    "lines_epsilon": [(helpers.TRACE, {"epsilon": 1e-3, "projection": "Weighted Average", "smooth_directions": False}), (helpers.MESH, {"triangulate": True})],
+    "lines_epsilon": [
+        (helpers.TRACE, {"epsilon": 1e-3, "projection": "Weighted Average", "smooth_directions": False}),
+        (helpers.MESH, {"triangulate": True}),
+    ],
     "field_lines": [(helpers.TRACE, {"method": "Position Field", "target_vertices": 300})],
     "features": [(helpers.FEATURES, {})],
     "pipeline": [(helpers.PIPELINE, {"keep_intermediate_layers": True})],
     "pipeline_epsilon": [(helpers.PIPELINE, {"epsilon": 1e-3, "denoise": False, "close_holes": True})],
-    "pipeline_normals": [(helpers.PIPELINE, {"estimate_normals": "Always", "target_vertices": 300, "reject_outliers": False})],
+    "pipeline_normals": [
+        (helpers.PIPELINE, {"estimate_normals": "Always", "target_vertices": 300, "reject_outliers": False})
+    ],
     "traced_pipeline": [(helpers.PIPELINE, {"method": "Traced Lines", "keep_intermediate_layers": True})],
-    "published_pipeline": [(helpers.PIPELINE, {"method": "Traced Lines", "scale_mode": "Paper", "target_vertices": 200})],
+    "published_pipeline": [
+        (helpers.PIPELINE, {"method": "Traced Lines", "scale_mode": "Paper", "target_vertices": 200})
+    ],
     "paper_scale_field": [(helpers.PIPELINE, {"scale_mode": "Paper", "target_vertices": 250})],
     "m_weighted": [(helpers.M_WEIGHTED, {})],
     "projection": [(helpers.PROJECT, {})],
 }
 
 
-def results(report) -> dict:
+def results(report: dict | None) -> dict:
     return {key: value for key, value in (report or {}).items() if not key.startswith("seconds_")}
 
 
-def run(meshes: pymeshlab.MeshSet, steps) -> str:
-    said = []
+def run(meshes: pymeshlab.MeshSet, steps: list[Step]) -> str:
+    said: list[dict | str] = []
     for name, parameters in steps:
         try:
             said.append(results(meshes.apply_filter(name, **parameters)))
@@ -99,7 +112,7 @@ def image(meshes: pymeshlab.MeshSet, surface: str) -> str:
         return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def lines(clouds):
+def lines(clouds: Iterable[str]) -> Iterator[str]:
     for cloud in clouds:
         positions, normals = CLOUDS[cloud]()
         for chain, steps in CHAINS.items():

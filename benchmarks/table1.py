@@ -1,24 +1,22 @@
 # Seconds per stage and peak memory beside Table 1 of Kalogerakis et al. 2009 ("Extracting lines of curvature from
 # noisy point clouds"): the published method on one core and on all, each cloud and number in a process of its own.
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes benchmarks/results/table1.md."""
-
 from __future__ import annotations
 
-import argparse
-import multiprocessing
 import os
-import resource
-import sys
-import time
-from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-import measures
-from comparison import Target, number, verdict
-from measures import analytic_surfaces
+from clouds.scans import meshlab_sample, oriented_vertices
+from harness.command_line import Benchmark, Settings, main
+from harness.fresh_process import in_fresh_process
+from harness.our_filters import run_on
+from harness.process_memory import peak_megabytes
+from harness.report import markdown_table, progress
+from harness.shared import PIPELINE, analytic_surfaces, layer
+from harness.verdicts import Target, number, verdict
 
 STAGES = ("curvature", "normals", "outliers", "denoising", "lines", "meshing")
 PUBLISHED = {  # seconds of STAGES, total; megabytes: 3 GHz Pentium IV
@@ -52,73 +50,100 @@ PUBLISHED_STAGE_OF = {
     "mesh": "meshing",
 }
 
+BENCHMARK = Benchmark(
+    "table1",
+    "Time per stage",
+    data=f"{', '.join(file for file, *_ in STAND_INS.values())} are; without, these are left out",
+)
 
-def cloud(name: str, data: Path | None = None):
+
+@dataclass(frozen=True)
+class StageCosts:
+    points: int
+    seconds: dict[str, float]  # of STAGES
+    wall: float  # seconds in all
+    processor: float  # seconds in all, all threads
+    megabytes: float  # at the peak, above the host with the cloud loaded
+
+
+def cloud(name: str, data: Path | None) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and normals (N x 3 each) of a row of PUBLISHED."""
     if name in STAND_INS:
+        assert data is not None
         file, subdivisions, points = STAND_INS[name]
-        positions, normals = measures.oriented_vertices(data / file, subdivisions)
+        positions, normals = oriented_vertices(data / file, subdivisions)
         drawn = np.sort(np.random.default_rng(1).choice(len(positions), points, replace=False))
         return positions[drawn], normals[drawn]
     if name == "cow 46K":
-        return measures.meshlab_sample("cow.obj", subdivisions=2)
-    surface, points = name.split()
+        return meshlab_sample("cow.obj", subdivisions=2)
+    surface, count = name.split()
     noise = 0.0 if surface == "cube" else 0.005
-    made = analytic_surfaces.generate(surface, int(points), noise=noise, seed=1)
+    made = analytic_surfaces.generate(surface, int(count), noise=noise, seed=1)
     return made["positions"], made["normals"]
 
 
-def peak_megabytes() -> float:
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-
-
-def run(name: str, data: Path | None) -> tuple[int, dict[str, float], float, float, float]:
-    """Points, seconds of each published stage, in all by the wall clock and of the processor, megabytes above idle."""
+def stage_costs(name: str, data: Path | None) -> StageCosts:
+    """In a process that has done nothing else."""
     positions, normals = cloud(name, data)
-    meshes = measures.layer(positions, normals)
+    meshes = layer(positions, normals)
     idle = peak_megabytes()
-    wall, processor = time.perf_counter(), time.process_time()
-    values = meshes.generate_surface_reconstruction_curvature_aligned(method="Traced Lines", scale_mode="Paper")
-    wall, processor = time.perf_counter() - wall, time.process_time() - processor
+    ran = run_on(meshes, PIPELINE, method="Traced Lines", scale_mode="Paper")
     seconds = dict.fromkeys(STAGES, 0.0)
-    for key, value in values.items():
+    for key, value in ran.report.items():
         if key.startswith("seconds_") and key != "seconds_total":
             seconds[PUBLISHED_STAGE_OF[key.removeprefix("seconds_")]] += value
-    return len(positions), seconds, wall, processor, peak_megabytes() - idle
+    return StageCosts(len(positions), seconds, ran.seconds, ran.processor_seconds, peak_megabytes() - idle)
 
 
-def in_own_process(name: str, data: Path | None, threads: int):
+def with_threads(threads: int, name: str, data: Path | None) -> StageCosts:
     os.environ["OMP_NUM_THREADS"] = str(threads)  # of the process to come: OpenMP asks once
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(max_workers=1, mp_context=context) as pool:
-        return pool.submit(run, name, data).result()
+    return in_fresh_process(stage_costs, name, data)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    files = ", ".join(file for file, *_ in STAND_INS.values())
-    parser.add_argument("--data", type=Path, metavar="FOLDER", help=f"where {files} are; without, these are left out")
-    given = parser.parse_args()
+def compared(name: str, data: Path | None) -> tuple[list[list[str]], list[list[str]]]:
+    """Rows of the table of stages and of the table of figures."""
+    stages, total, memory = PUBLISHED[name]
+    rows = [[name, "published", *(f"{s:.1f}" for s in stages), f"{total:.1f}", "–", f"{memory:.0f}"]]
+    costs = {threads: with_threads(threads, name, data) for threads in (1, len(os.sched_getaffinity(0)))}
+    for threads, cost in costs.items():
+        cells = ["–" if stage == "normals" else f"{cost.seconds[stage]:.2f}" for stage in STAGES]
+        label = f"ours, {threads} thread" + ("s" if threads > 1 else "")
+        totals = [f"{cost.wall:.2f}", f"{cost.processor:.2f}", f"{cost.megabytes:.0f}"]
+        rows.append([f"{cost.points} points", label, *cells, *totals])
+    alone, together = costs[1], costs[max(costs)]
+    faster, share = total / together.wall, together.megabytes / memory
+    figures = [
+        [f"{name}: times as fast", number(faster), *verdict(faster, FASTER)],
+        [f"{name}: times as fast on one thread (processor)", number(total / alone.processor), "–", "–", ""],
+        [f"{name}: share of the memory", number(share), *verdict(share, LESS_MEMORY)],
+    ]
+    return rows, figures
+
+
+@BENCHMARK.introduction
+def table(settings: Settings) -> str:
     rows, figures = [], []
-    cores = len(os.sched_getaffinity(0))
-    for name, (stages, total, memory) in PUBLISHED.items():
-        if name in STAND_INS and given.data is None:
+    for name in PUBLISHED:
+        if name in STAND_INS and settings.data is None:
             continue
-        print(name, file=sys.stderr, flush=True)
-        published_memory = memory
-        rows.append([name, "published", *(f"{s:.1f}" for s in stages), f"{total:.1f}", "–", f"{memory:.0f}"])
-        alone = together = 0.0
-        for threads in dict.fromkeys((1, cores)):
-            points, seconds, wall, processor, memory = in_own_process(name, given.data, threads)
-            cells = ["–" if stage == "normals" else f"{seconds[stage]:.2f}" for stage in STAGES]
-            label = f"ours, {threads} thread" + ("s" if threads > 1 else "")
-            rows.append([f"{points} points", label, *cells, f"{wall:.2f}", f"{processor:.2f}", f"{memory:.0f}"])
-            together = total / wall
-            alone = alone or total / processor
-        share = memory / published_memory
-        figures.append([f"{name}: times as fast", number(together), *verdict(together, FASTER)])
-        figures.append([f"{name}: times as fast on one thread (processor)", number(alone), "–", "–", ""])
-        figures.append([f"{name}: share of the memory", number(share), *verdict(share, LESS_MEMORY)])
-    body = (
+        progress(name)
+        more_rows, more_figures = compared(name, settings.data)
+        rows += more_rows
+        figures += more_figures
+    header = [
+        "Cloud",
+        "",
+        "curvature",
+        "normal correction",
+        "outliers",
+        "denoising",
+        "lines",
+        "meshing",
+        "total",
+        "processor",
+        "MB",
+    ]
+    return (
         "Seconds per stage. Published: Kalogerakis et al. 2009, Table 1, one 3 GHz Pentium IV. Ours: the same method "
         "(`Traced Lines`) on one thread and on all cores, as it runs by default, with robust outlier rejection and denoising, which need no curvature; it is "
         "estimated once, after them, and corrects the normals as it goes; smoothing of directions, umbilics and Voronoi cells count as extraction of lines. Where `processor` is well "
@@ -127,18 +152,11 @@ def main() -> None:
         "with true normals; the cow is PyMeshLab's sample after two Loop subdivisions. The paper's scans are not to be had; instead of the tooth "
         "the dentine of another (`tooth_pongo_DE.ply`), of Einstein a range map of a head (`meshlab_lato270_rawscan.ply`), of the fish "
         "the armadillo, of the hand another hand, subdivided and drawn from to the published number of points.\n\n"
-        + measures.markdown_table(
-            [
-                "Cloud", "", "curvature", "normal correction", "outliers", "denoising", "lines", "meshing", "total",
-                "processor", "MB",
-            ],  # fmt: skip
-            rows,
-        )
+        + markdown_table(header, rows)
         + "\n"
-        + measures.markdown_table(["figure", "ours", "must", "aim", "met"], figures)
+        + markdown_table(["figure", "ours", "must", "aim", "met"], figures)
     )
-    measures.write_result("table1", "table1.py" + (" --data FOLDER" if given.data else ""), "Time per stage", body)
 
 
 if __name__ == "__main__":
-    main()
+    main(BENCHMARK)

@@ -7,8 +7,9 @@ import time
 
 import numpy as np
 
+from harness.results import Estimate
 from peers.child_process import Arrays, in_child, serve
-from peers.estimate import Estimate, tidy
+from peers.estimate import tidy
 
 DEFAULT_SCALE = 2
 
@@ -32,13 +33,13 @@ def apss(positions: np.ndarray, normals: np.ndarray, scale: float) -> Estimate |
 def _child(cloud: Arrays, scale: str) -> Arrays:
     import pymeshlab
 
-    found = {}
+    found: Arrays = {}
     for key, quality in (("k1", "K1"), ("k2", "K2")):  # curvature leaves the filter as vertex quality alone
         meshes = pymeshlab.MeshSet()
         meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=cloud["positions"], v_normals_matrix=cloud["normals"]))
         start = time.perf_counter()
         meshes.compute_curvature_and_color_apss_per_vertex(filterscale=float(scale), curvaturetype=quality)
-        found.setdefault("seconds", time.perf_counter() - start)
+        found.setdefault("seconds", np.array(time.perf_counter() - start))
         found[key] = meshes.current_mesh().vertex_scalar_array()
     # K1 has the larger absolute value, and the direction stored as PD2 (2025.7).
     found["d1"] = meshes.current_mesh().vertex_curvature_principal_dir2_matrix()

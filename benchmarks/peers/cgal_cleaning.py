@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from peers.cleaned import Moved, Selection
+from harness.results import Moved, Selection
 from peers.programs import run_program
 
 

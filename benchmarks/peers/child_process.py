@@ -13,11 +13,20 @@ import numpy as np
 Arrays = dict[str, np.ndarray]
 
 
+def _read(path: str | Path) -> Arrays:
+    with np.load(path) as found:
+        return dict(found)
+
+
+def _write(path: Path, arrays: Arrays) -> None:
+    np.savez(path, **arrays)  # type: ignore[arg-type]
+
+
 def in_child(module: str, given: Arrays, *words: object, python: str | Path = sys.executable) -> Arrays | None:
     """What ``module`` (which ends in :func:`serve`) makes of the arrays and words; None if it crashed."""
     with tempfile.TemporaryDirectory() as folder:
         before, after = Path(folder) / "before.npz", Path(folder) / "after.npz"
-        np.savez(before, **given)
+        _write(before, given)
         done = subprocess.run(
             [python, "-m", module, before, after, *map(str, words)],
             cwd=Path(__file__).resolve().parent.parent,
@@ -28,13 +37,10 @@ def in_child(module: str, given: Arrays, *words: object, python: str | Path = sy
             return None
         if done.returncode > 0:
             raise RuntimeError(done.stderr.decode(errors="replace"))
-        with np.load(after) as found:
-            return dict(found)
+        return _read(after)
 
 
 def serve(run: Callable[..., Arrays]) -> None:
     """The child's side: ``run`` gets the arrays and the words."""
     before, after, *words = sys.argv[1:]
-    with np.load(before) as given:
-        arrays = dict(given)
-    np.savez(after, **run(arrays, *words))
+    _write(Path(after), run(_read(before), *words))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from peers.estimate import Estimate, tidy
+from harness.results import Estimate
+from peers.estimate import tidy
 from peers.programs import run_program
 
 

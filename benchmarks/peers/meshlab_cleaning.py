@@ -7,11 +7,13 @@ import time
 
 import numpy as np
 
+from harness.results import Moved, Selection
 from peers.child_process import Arrays, in_child, serve
-from peers.cleaned import Moved, Selection
 
 
-def apss_projection(positions: np.ndarray, normals: np.ndarray, scale: float, *, one_layer: bool = False) -> Moved | None:
+def apss_projection(
+    positions: np.ndarray, normals: np.ndarray, scale: float, *, one_layer: bool = False
+) -> Moved | None:
     """None if the filter crashed, as it does when one layer is both the surface and what is projected."""
     cloud = {"positions": positions, "normals": normals}
     found = in_child("peers.meshlab_cleaning", cloud, "apss", scale, 1 if one_layer else 2)

@@ -9,8 +9,8 @@ from functools import cache
 
 import numpy as np
 
+from harness.results import Selection
 from peers.child_process import Arrays, in_child, serve
-from peers.cleaned import Selection
 from peers.programs import BUILD
 
 _ENVIRONMENT = BUILD / "open3d"

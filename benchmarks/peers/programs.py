@@ -24,7 +24,9 @@ def _built() -> Path:
 
 
 def cgal_version() -> str:
-    return subprocess.run([_built() / "cgal_jets", "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    return subprocess.run(
+        [_built() / "cgal_jets", "--version"], capture_output=True, text=True, check=True
+    ).stdout.strip()
 
 
 def write_cloud(path: Path, positions: np.ndarray, normals: np.ndarray, points: np.ndarray = NO_POINTS) -> None:
@@ -42,6 +44,6 @@ def run_program(
     with tempfile.TemporaryDirectory() as folder:
         cloud, results = Path(folder) / "cloud.bin", Path(folder) / "results.bin"
         write_cloud(cloud, positions, normals, points)
-        command = [_built() / words[0], *words[1:], cloud, results, *map(str, numbers)]
+        command = [str(_built() / words[0]), *words[1:], str(cloud), str(results), *map(str, numbers)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         return results.read_bytes(), float(done.stdout)

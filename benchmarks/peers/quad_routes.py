@@ -3,11 +3,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
+import importlib
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pymeshlab
 
+from harness.process_memory import peak_megabytes, reset_peak
 from peers.child_process import Arrays, in_child, serve
 
 PACKAGES = ("pynanoinstantmeshes", "pyQuadriFlow")
@@ -17,8 +21,8 @@ TRIM = 4.0  # spacings: what Poisson adds further from the points of an open sur
 
 @dataclass(frozen=True)
 class RouteMesh:
-    vertices: np.ndarray
-    faces: list[np.ndarray]
+    vertices: np.ndarray  # N x 3
+    faces: list[np.ndarray]  # indices of vertices
     seconds: float
     megabytes: float  # at the peak, above the host with the cloud loaded
 
@@ -35,55 +39,74 @@ def poisson_then_quads(
     return RouteMesh(found["vertices"], split, float(found["seconds"]), float(found["megabytes"]))
 
 
+Mesh = tuple[np.ndarray, Sequence]  # vertices (N x 3), faces
+
+
+def _poisson(meshes: pymeshlab.MeshSet, depth: int, spacing: float) -> None:
+    """Adds the surface as a layer; of an open one (spacing > 0) without what is far from the points."""
+    meshes.generate_surface_reconstruction_screened_poisson(depth=depth)
+    if spacing <= 0.0:
+        return
+    surface = meshes.current_mesh_id()
+    meshes.compute_scalar_by_distance_from_another_mesh_per_vertex(
+        measuremesh=surface, refmesh=0, signeddist=False, maxdist=pymeshlab.PercentageValue(100)
+    )
+    meshes.compute_selection_by_condition_per_face(condselect=f"max(q0, max(q1, q2)) > {TRIM * spacing}")
+    meshes.meshing_remove_selected_faces()
+    meshes.meshing_remove_unreferenced_vertices()
+
+
+def _by_pairs(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
+    """Isotropic remeshing to the edge length of so many squares, then pairs of triangles."""
+    corners = meshes.current_mesh().vertex_matrix()[meshes.current_mesh().face_matrix()]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    edge = pymeshlab.PureValue(np.sqrt(area / faces * 2.0 / np.sqrt(3.0)))
+    meshes.meshing_isotropic_explicit_remeshing(iterations=6, targetlen=edge)
+    meshes.meshing_tri_to_quad_by_smart_triangle_pairing()
+    try:
+        found = meshes.current_mesh().polygonal_face_list()
+    except MemoryError:  # what pairing can leave of a trimmed surface
+        found = []
+    return meshes.current_mesh().vertex_matrix(), found
+
+
+def _by_instant_meshes(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
+    from pynanoinstantmeshes import remesh
+
+    mesh = meshes.current_mesh()
+    vertices, triangles = mesh.vertex_matrix().astype(np.float32), mesh.face_matrix().astype(np.uint32)
+    # The package always splits every face into four.
+    return remesh(vertices, triangles, max(1, faces // 4), deterministic=True)
+
+
+def _by_quadriflow(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
+    from pyQuadriFlow.pyQuadriFlow import pyquadriflow
+
+    mesh = meshes.current_mesh()
+    vertices, triangles = mesh.vertex_matrix().tolist(), mesh.face_matrix().tolist()
+    try:
+        flow = pyquadriflow(faces, 0, vertices, triangles, False, False, False, False, False)
+    except Exception as failure:  # its own, of no narrower kind
+        if "QuadriFlow" not in str(failure):
+            raise
+        return np.empty((0, 3)), []
+    return np.array(flow["vertices"]), flow["faces"]
+
+
+_BY = {"instant": _by_instant_meshes, "flow": _by_quadriflow, "pairs": _by_pairs}
+_MODULES = {"instant": "pynanoinstantmeshes", "flow": "pyQuadriFlow.pyQuadriFlow"}
+
+
 def _child(cloud: Arrays, quads: str, depth: str, faces: str, spacing: str) -> Arrays:
-    import pymeshlab
-
-    from process_memory import peak_megabytes, reset_peak
-
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=cloud["positions"], v_normals_matrix=cloud["normals"]))
-    if quads == "instant":
-        from pynanoinstantmeshes import remesh
-    elif quads == "flow":
-        from pyQuadriFlow.pyQuadriFlow import pyquadriflow
+    if quads in _MODULES:
+        importlib.import_module(_MODULES[quads])  # loaded before anything is measured
     reset_peak()
     loaded = peak_megabytes()
     start = time.perf_counter()
-    meshes.generate_surface_reconstruction_screened_poisson(depth=int(depth))
-    if float(spacing) > 0.0:
-        surface = meshes.current_mesh_id()
-        meshes.compute_scalar_by_distance_from_another_mesh_per_vertex(
-            measuremesh=surface, refmesh=0, signeddist=False, maxdist=pymeshlab.PercentageValue(100)
-        )
-        meshes.compute_selection_by_condition_per_face(condselect=f"max(q0, max(q1, q2)) > {TRIM * float(spacing)}")
-        meshes.meshing_remove_selected_faces()
-        meshes.meshing_remove_unreferenced_vertices()
-    vertices, triangles = meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
-    if quads == "pairs":
-        # Isotropic remeshing to the edge length of so many squares, then pairs of triangles.
-        corners = vertices[triangles]
-        area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
-        edge = pymeshlab.PureValue(np.sqrt(area / int(faces) * 2.0 / np.sqrt(3.0)))
-        meshes.meshing_isotropic_explicit_remeshing(iterations=6, targetlen=edge)
-        meshes.meshing_tri_to_quad_by_smart_triangle_pairing()
-        try:
-            found = meshes.current_mesh().polygonal_face_list()
-        except MemoryError:  # what pairing can leave of a trimmed surface
-            found = []
-        vertices = meshes.current_mesh().vertex_matrix()
-    elif quads == "instant":
-        # The package always splits every face into four.
-        vertices, found = remesh(
-            vertices.astype(np.float32), triangles.astype(np.uint32), max(1, int(faces) // 4), deterministic=True
-        )
-    else:
-        try:
-            flow = pyquadriflow(int(faces), 0, vertices.tolist(), triangles.tolist(), False, False, False, False, False)
-        except Exception as failure:  # its own, of no narrower kind
-            if "QuadriFlow" not in str(failure):
-                raise
-            flow = {"vertices": [], "faces": []}
-        vertices, found = np.array(flow["vertices"]), flow["faces"]
+    _poisson(meshes, int(depth), float(spacing))
+    vertices, found = _BY[quads](meshes, int(faces))
     seconds, megabytes = time.perf_counter() - start, peak_megabytes() - loaded
     return {
         "vertices": np.asarray(vertices, dtype=float).reshape(-1, 3),

@@ -1,4 +1,5 @@
-# Clouds as layers, snapshots of layers, and the dictionaries every filter returns.
+# Clouds as layers, snapshots of layers, and the dictionaries every filter returns. The benchmarks use it too
+# (benchmarks/harness/shared.py).
 # SPDX-License-Identifier: GPL-3.0-or-later
 import os
 import sys

@@ -1,4 +1,5 @@
-# The largest memory that this process had since it was last reset.
+# The largest memory that this process had since it began or was last reset (Linux). Without our plugin and PyMeshLab: a
+# peer's process uses it too.
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ def reset_peak() -> None:
 
 
 def peak_megabytes() -> float:
-    """A child's `ru_maxrss` may be its parent's."""
+    """Not by getrusage: a child's `ru_maxrss` may be its parent's."""
     status = Path("/proc/self/status").read_text(encoding="ascii")
     kilobytes = next(line for line in status.splitlines() if line.startswith("VmHWM")).split()[1]
     return int(kilobytes) / 1024.0

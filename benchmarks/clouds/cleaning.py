@@ -1,4 +1,4 @@
-# Clouds with outliers and noise, the truth about them, and the figures of what a method made of them.
+# The clouds of the table of cleaning, with outliers and noise, and the truth about them.
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
@@ -10,28 +10,26 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 
-import measures
-from comparison import Figures
-from measures import analytic_surfaces
-from peers.cleaned import Moved, Selection
+from clouds.generated import PLANE_FIT_NEIGHBORS
+from clouds.scans import loaded
+from clouds.spacing import nearest_neighbor_distances
+from harness.shared import analytic_surfaces
 
-PLANE_FIT_NEIGHBORS = 16
 SMOOTH_NORMALS_NEIGHBORS = 100  # best known for the peers that live on their normals
 SMALLEST_NOISE_UNIT = 0.0025  # of the diagonal
-CLEARLY_OUTSIDE = 3.0  # noise units from the surface: nearer outliers nobody can tell from noise
 EDGE_ZONE = 0.05  # of the cube's side
 
 
 @dataclass(frozen=True)
 class Cloud:
-    """What the methods get, the truth, and the parts the figures are of."""
+    """What the methods get (N points), the truth, and the parts the figures are of."""
 
-    positions: np.ndarray
-    outward: np.ndarray  # true normals, only to say which side is outside
+    positions: np.ndarray  # N x 3
+    outward: np.ndarray  # N x 3: true normals, only to say which side is outside
     outlier: np.ndarray  # mask: those put in as outliers
     noise_unit: np.ndarray  # standard deviation of the noise, per point, at least the smallest unit
     distance: Callable[[np.ndarray], np.ndarray]  # signed, of moved positions (all points) from the surface
-    parts: dict[str, np.ndarray]  # name -> mask of points
+    parts: dict[str, np.ndarray]  # name: mask of points
     rim_distance: Callable[[np.ndarray], np.ndarray] | None = None  # of the foot points, where there is a rim
 
     @cached_property
@@ -179,8 +177,7 @@ def quarters_alone(cloud: Cloud) -> list[Cloud]:
 
 def with_clean_mesh(noisy: Path, clean: Path, impulsive: bool = False) -> Cloud:
     """The vertices of a noisy mesh whose clean one has the same order; impulsive: the displaced ones are outliers."""
-    meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(clean))
+    meshes = loaded(clean)
     meshes.compute_normal_per_vertex()
     truth = meshes.current_mesh().vertex_matrix()
     outward = meshes.current_mesh().vertex_normal_matrix()
@@ -197,66 +194,6 @@ def with_clean_mesh(noisy: Path, clean: Path, impulsive: bool = False) -> Cloud:
         return meshes.current_mesh().vertex_scalar_array()
 
     outlier = displaced > 1e-3 * unit if impulsive else np.zeros(len(positions), bool)
-    return Cloud(positions, outward, outlier, np.full(len(positions), unit), distance, {"": np.ones(len(positions), bool)})
-
-
-def nearest_neighbor_distances(points: np.ndarray) -> np.ndarray:
-    """Of every point to the nearest other one, by VTK's kd-tree."""
-    import pyvista
-    from vtkmodules.vtkCommonCore import vtkIdList
-    from vtkmodules.vtkCommonDataModel import vtkStaticPointLocator
-
-    locator = vtkStaticPointLocator()
-    locator.SetDataSet(pyvista.PolyData(points))
-    locator.BuildLocator()
-    found, nearest = vtkIdList(), np.empty(len(points))
-    for index, point in enumerate(points):
-        locator.FindClosestNPoints(2, point, found)
-        nearest[index] = max(np.linalg.norm(points[found.GetId(place)] - point) for place in (0, 1))
-    return nearest
-
-
-def prefixed(part: str, figures: Figures) -> Figures:
-    return {f"{part}, {name}" if part else name: value for name, value in figures.items()}
-
-
-def selection_figures(cloud: Cloud, selection: Selection) -> Figures:
-    """Outliers nearer than three noise units are in neither count."""
-    far = np.abs(cloud.distance_before) > CLEARLY_OUTSIDE * cloud.noise_unit
-    found, good, bad = selection.outliers, ~cloud.outlier, cloud.outlier & far
-    figures = {"inliers selected, %": 100.0 * float(found[good].mean())}
-    if bad.any():
-        hits, wrong = np.count_nonzero(found & bad), np.count_nonzero(found & good)
-        figures = {"recall": hits / bad.sum(), "precision": hits / max(1, hits + wrong), **figures}
-    return figures
-
-
-def part_selection_figures(cloud: Cloud, selection: Selection) -> Figures:
-    figures = {}
-    for name, mask in cloud.parts.items():
-        part = cloud.only(mask, {})
-        figures |= prefixed(name, selection_figures(part, replace(selection, outliers=selection.outliers[mask])))
-    return figures
-
-
-def ratio_figures(cloud: Cloud, moved: Moved) -> Figures:
-    before, after = cloud.distance_before, cloud.distance(moved.positions)
-    figures = {}
-    for name, mask in cloud.parts.items():
-        mask = mask & ~cloud.outlier
-        figures |= prefixed(name, {"RMS ratio": measures.rms(after[mask]) / measures.rms(before[mask])})
-    return figures
-
-
-def denoising_figures(cloud: Cloud, moved: Moved) -> Figures:
-    """Ratios per part; of the whole: shrinking or growing, clumping, what became of the rim."""
-    before, after = cloud.distance_before, cloud.distance(moved.positions)
-    nearest = nearest_neighbor_distances(moved.positions)
-    figures = ratio_figures(cloud, moved)
-    figures["signed mean"] = abs(float(after.mean())) / measures.rms(before)
-    figures["CV of spacing"] = float(nearest.std() / nearest.mean())
-    if cloud.rim_distance is not None:
-        rim = cloud.rim_distance(cloud.positions) < cloud.spacing
-        inwards = (cloud.rim_distance(moved.positions) - cloud.rim_distance(cloud.positions))[rim]
-        figures["rim retreat"] = float(np.quantile(inwards, 0.95)) / cloud.spacing
-    return figures
+    return Cloud(
+        positions, outward, outlier, np.full(len(positions), unit), distance, {"": np.ones(len(positions), bool)}
+    )

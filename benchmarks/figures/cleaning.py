@@ -1,0 +1,61 @@
+# What a method made of a cloud with outliers and noise: which points it selected, how near it moved them to the surface.
+# SPDX-License-Identifier: GPL-3.0-or-later
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from clouds.cleaning import Cloud
+from clouds.spacing import nearest_neighbor_distances
+from harness.comparison import Figures
+from harness.results import Moved, Selection
+from harness.shared import rms
+
+CLEARLY_OUTSIDE = 3.0  # noise units from the surface: nearer outliers cannot be told from noise
+
+
+def prefixed(part: str, figures: Figures) -> Figures:
+    return {f"{part}, {name}" if part else name: value for name, value in figures.items()}
+
+
+def selection_figures(cloud: Cloud, selection: Selection) -> Figures:
+    """Outliers nearer than three noise units are in neither count."""
+    far = np.abs(cloud.distance_before) > CLEARLY_OUTSIDE * cloud.noise_unit
+    found, good, bad = selection.outliers, ~cloud.outlier, cloud.outlier & far
+    figures = {"inliers selected, %": 100.0 * float(found[good].mean())}
+    if bad.any():
+        hits, wrong = np.count_nonzero(found & bad), np.count_nonzero(found & good)
+        figures = {"recall": hits / bad.sum(), "precision": hits / max(1, hits + wrong), **figures}
+    return figures
+
+
+def part_selection_figures(cloud: Cloud, selection: Selection) -> Figures:
+    figures: Figures = {}
+    for name, mask in cloud.parts.items():
+        part = cloud.only(mask, {})
+        figures |= prefixed(name, selection_figures(part, replace(selection, outliers=selection.outliers[mask])))
+    return figures
+
+
+def ratio_figures(cloud: Cloud, moved: Moved) -> Figures:
+    before, after = cloud.distance_before, cloud.distance(moved.positions)
+    figures: Figures = {}
+    for name, mask in cloud.parts.items():
+        mask = mask & ~cloud.outlier
+        figures |= prefixed(name, {"RMS ratio": rms(after[mask]) / rms(before[mask])})
+    return figures
+
+
+def denoising_figures(cloud: Cloud, moved: Moved) -> Figures:
+    """Ratios per part; of the whole: shrinking or growing, clumping, what became of the rim."""
+    before, after = cloud.distance_before, cloud.distance(moved.positions)
+    nearest = nearest_neighbor_distances(moved.positions)
+    figures = ratio_figures(cloud, moved)
+    figures["signed mean"] = abs(float(after.mean())) / rms(before)
+    figures["CV of spacing"] = float(nearest.std() / nearest.mean())
+    if cloud.rim_distance is not None:
+        rim = cloud.rim_distance(cloud.positions) < cloud.spacing
+        inwards = (cloud.rim_distance(moved.positions) - cloud.rim_distance(cloud.positions))[rim]
+        figures["rim retreat"] = float(np.quantile(inwards, 0.95)) / cloud.spacing
+    return figures

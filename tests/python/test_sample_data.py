@@ -1,19 +1,15 @@
 # The Python interface of the sample generator, and the clouds committed in sample_data/.
 # SPDX-License-Identifier: GPL-3.0-or-later
 import shlex
-import sys
 from pathlib import Path
 
 import numpy as np
 import pymeshlab
 import pytest
 
-CHECKOUT = Path(__file__).resolve().parents[2]
+from helpers import CHECKOUT, analytic_surfaces
+
 SAMPLES = CHECKOUT / "sample_data"
-sys.path.insert(0, str(SAMPLES))
-
-import analytic_surfaces  # noqa: E402
-
 COMMANDS = [
     shlex.split(line)[2:]
     for line in (SAMPLES / "README.md").read_text(encoding="utf-8").splitlines()

@@ -144,7 +144,7 @@ FilterResults apply(const FilterContext& context)
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
 	results.count("duplicates", prepared.duplicates);
 	if (options.method == DenoisingOptions::Method::Robust) {
-		results.real("noise", denoised.noise * prepared.diagonal);
+		results.real("noise", denoised.pointDeviation * prepared.diagonal);
 		results.real("radius", denoised.radius);
 	}
 	else {

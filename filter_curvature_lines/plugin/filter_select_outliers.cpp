@@ -116,7 +116,7 @@ FilterResults apply(const FilterContext& context)
 	results.count("duplicates", prepared.duplicates);
 	results.count("rounds", rejected.roundsUsed);
 	results.count("deleted", erase ? deleteVertices(layer.cm, selected) : 0);
-	results.real("noise", rejected.noise * prepared.diagonal);
+	results.real("noise", rejected.heightDeviation * prepared.diagonal);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -16,7 +16,7 @@ LONGEST_FUNCTION = 90  # lines between the braces
 
 # Units without a test file of their own, with the one that tests them.
 PARTS_OF_A_STAGE = {
-    "cleaning/outlier_appeal": "cleaning/outlier_rejection",
+    "cleaning/outlier_groups": "cleaning/outlier_rejection",
     "cleaning/outlier_ballot": "cleaning/outlier_rejection",
     "cleaning/outlier_voter": "cleaning/outlier_rejection",
     "cleaning/robust_outliers": "cleaning/outlier_rejection",
@@ -34,7 +34,7 @@ PARTS_OF_A_STAGE = {
     "fitting/anchor_fits": "curvature/adaptive_curvature",
     "fitting/blend_patch": "cleaning/robust_denoising",
     "fitting/face_projection": "cleaning/robust_denoising",
-    "fitting/local_noise": "cleaning/robust_denoising",
+    "fitting/point_deviation": "cleaning/robust_denoising",
     "fitting/local_surface": "curvature/adaptive_curvature",
     "fitting/patch_blend": "cleaning/robust_denoising",
     "fitting/point_subsets": "curvature/adaptive_curvature",

@@ -35,10 +35,10 @@ DenoisingResult denoiseByProjection(
 {
 	RobustDenoisingResult moved = denoiseRobustly(cloud, options, progress);
 	DenoisingResult       result;
-	result.positions = std::move(moved.positions);
-	result.normals   = std::move(moved.normals);
-	result.noise     = moved.noise;
-	result.radius    = moved.radius;
+	result.positions      = std::move(moved.positions);
+	result.normals        = std::move(moved.normals);
+	result.pointDeviation = moved.pointDeviation;
+	result.radius         = moved.radius;
 	return result;
 }
 

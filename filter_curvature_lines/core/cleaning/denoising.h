@@ -19,8 +19,8 @@ struct DenoisingResult {
 	Eigen::Matrix3Xd positions, normals;           // 3 x N
 	double           rmsMove = 0.0, maxMove = 0.0; // lengths
 	// Robust: what was used.
-	double noise  = 0.0; // standard deviation of the positions, a length
-	double radius = 0.0; // in local spacings
+	double pointDeviation = 0.0; // RobustDenoisingResult::pointDeviation, a length
+	double radius         = 0.0; // in local spacings
 	// Paper
 	Index  iterations    = 0;
 	double initialEnergy = 0.0, finalEnergy = 0.0;

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 // Voters that see an edge count only where there is no other; those that end before the point have a say
 // about its company, which at rims and corners others know even less.
-constexpr double bentWeight       = 1e-4;
+constexpr double overEdgeWeight   = 1e-4;
 constexpr double rimWeight        = 0.1;
 constexpr double acceptance       = 0.05; // a point is good if this share of its votes says so,
 constexpr int    lonelyAcceptance = 3;    // and for a point by itself this number of votes
@@ -35,7 +35,7 @@ Vector3d surfaceOf(const Ballot& ballot, bool lonely)
 			break;
 	}
 	Vector3d     toSurface = ballot.votes[k].toSurface;
-	const double reach     = coherence * ballot.noise;
+	const double reach     = coherence * ballot.heightError;
 	for (int step = 0; step < meanShifts; ++step) {
 		Vector3d sum    = Vector3d::Zero();
 		double   weight = 0.0;
@@ -64,11 +64,11 @@ void addVote(Ballot& ballot, const OutlierVoter& voter, const Vector3d& centre, 
 	const double near    = falling * falling;
 	const double r       = voter.surface.residual(local);
 	const bool   rim     = support == OutlierVoter::Support::Rim;
-	const double weight  = near * (voter.bent ? bentWeight : rim ? rimWeight : 1.0);
-	ballot.noise += near * voter.heightError();
+	const double weight  = near * (voter.overEdge ? overEdgeWeight : rim ? rimWeight : 1.0);
+	ballot.heightError += near * voter.heightError();
 	ballot.spacing += near * voter.spacing;
 	ballot.nearness += near;
-	ballot.proper |= !rim && !voter.bent;
+	ballot.proper |= !rim && !voter.overEdge;
 	(rim ? ballot.rimWeight : ballot.weight) += weight;
 	(rim ? ballot.rim : ballot.votes)
 		.push_back({std::abs(r), weight, -r * voter.surface.normal(local.x, local.y)});
@@ -79,10 +79,10 @@ Verdict countVotes(Ballot& ballot, double crowding, double sensitivity)
 	Verdict verdict;
 	if (!(ballot.nearness > 0.0))
 		return verdict;
-	ballot.noise /= ballot.nearness;
-	verdict.noise   = ballot.noise;
-	verdict.spacing = ballot.spacing / ballot.nearness;
-	verdict.lonely  = crowding > lonelyDistance * verdict.spacing;
+	ballot.heightError /= ballot.nearness;
+	verdict.heightError = ballot.heightError;
+	verdict.spacing     = ballot.spacing / ballot.nearness;
+	verdict.lonely      = crowding > lonelyDistance * verdict.spacing;
 	if (verdict.lonely && !ballot.proper)
 		return verdict;
 	if (!verdict.lonely) {
@@ -96,10 +96,10 @@ Verdict countVotes(Ballot& ballot, double crowding, double sensitivity)
 		return a.distance < b.distance;
 	});
 	verdict.toSurface = surfaceOf(ballot, verdict.lonely);
-	verdict.deviation = verdict.toSurface.norm() / verdict.noise;
+	verdict.deviation = verdict.toSurface.norm() / verdict.heightError;
 	double against    = 0.0;
 	for (const Vote& vote : ballot.votes)
-		if (vote.distance > sensitivity * verdict.noise)
+		if (vote.distance > sensitivity * verdict.heightError)
 			against += vote.weight;
 	verdict.against = std::clamp(against / ballot.weight, 0.0, 1.0);
 	return verdict;

@@ -17,23 +17,24 @@ struct Ballot {
 	std::vector<Vote> votes, rim;
 	double            weight = 0.0, rimWeight = 0.0;
 	bool              proper = false; // a voter that knows the place and sees no edge
-	double            noise = 0.0, spacing = 0.0, nearness = 0.0;
+	// Sums over the votes by nearness: OutlierVoter::heightError() and spacing.
+	double heightError = 0.0, spacing = 0.0, nearness = 0.0;
 
 	void clear()
 	{
 		votes.clear();
 		rim.clear();
-		weight = rimWeight = noise = spacing = nearness = 0.0;
-		proper                                          = false;
+		weight = rimWeight = heightError = spacing = nearness = 0.0;
+		proper                                                = false;
 	}
 };
 
 // What the votes say about one point.
 struct Verdict {
-	Eigen::Vector3d toSurface = Eigen::Vector3d::Zero();
-	double          deviation = 0.0; // noise units
-	double          against   = 0.0; // share of the votes
-	double          noise = 0.0, spacing = 0.0;
+	Eigen::Vector3d toSurface   = Eigen::Vector3d::Zero();
+	double          deviation   = 0.0;                // distance from the surface over heightError
+	double          against     = 0.0;                // share of the votes
+	double          heightError = 0.0, spacing = 0.0; // lengths
 	Index           votes  = 0;
 	bool            lonely = false;
 };

@@ -17,7 +17,8 @@ OutlierResult rejectByPublishedVotes(
 	const CurvatureField field = robustCurvature(
 		cloud, search, minimum, options.curvature, progress.sub(0.1, 0.9, "Estimating curvature"));
 	OutlierResult result = voteOutliers(field, options.voteThreshold);
-	result.noise = surfaceNoise(cloud.positions, progress.sub(0.9, 1.0, "Measuring the noise"));
+	result.heightDeviation =
+		voterHeightDeviation(cloud.positions, progress.sub(0.9, 1.0, "Measuring the noise"));
 	return result;
 }
 

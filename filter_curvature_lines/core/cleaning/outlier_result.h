@@ -13,7 +13,10 @@ struct OutlierResult {
 	std::vector<double> score;          // N, share of votes against, 0..1; 1 for isolated points
 	Index               isolated   = 0; // rejected because nothing surrounds them
 	Index               roundsUsed = 0;
-	double              noise      = 0.0; // robust standard deviation of height residuals (length)
+	// Robust standard deviation of the heights of points over the voters' quadrics (1.4826 median |r|, corrected
+	// for what the fit takes of it), the median over the voters; a length. It contains whatever detail a
+	// quadric of 24 to 400 points does not follow.
+	double heightDeviation = 0.0;
 };
 
 } // namespace curvature_lines

@@ -23,9 +23,9 @@ constexpr Index  nearCentre       = 9;
 constexpr double fewestKept       = 0.8; // of the points asked for, or a larger ball is searched
 constexpr double largestBall      = 4.0; // times the points asked for
 // of the spacing: what a quadric misses on an exact surface
-constexpr double minNoise    = 0.06;
-constexpr double onSurface   = 3.0; // deviations
-constexpr double minMajority = 0.35;
+constexpr double minDeviation = 0.06;
+constexpr double onSurface    = 3.0; // deviations
+constexpr double minMajority  = 0.35;
 // squared Mahalanobis distance; 4 is the rim of a uniform disk
 constexpr double insideDistance2 = 4.5;
 constexpr double rimDistance2    = 9.0; // 7.4 is the corner of a quarter of a disk
@@ -105,7 +105,7 @@ double OutlierVoter::deviation() const
 
 double OutlierVoter::heightError() const
 {
-	return noise * std::sqrt(1.0 + predictionVariance / neighbors);
+	return heightDeviation * std::sqrt(1.0 + predictionVariance / neighbors);
 }
 
 OutlierVoter::Support OutlierVoter::support(const SurfacePatch::Local& p) const
@@ -130,7 +130,7 @@ void fitVoter(OutlierVoter& voter, const VoterCloud& cloud)
 		points.col(k) = cloud.positions.col(even[k]);
 	const double spacing = radius * std::sqrt(EIGEN_PI / std::max<double>(1.0, even.size()));
 	const auto   seed    = static_cast<std::uint32_t>(cloud.rank[voter.centre]);
-	if (!fitPatchRobustly(voter.surface, points, radius, minNoise * spacing, seed, scratch))
+	if (!fitPatchRobustly(voter.surface, points, radius, minDeviation * spacing, seed, scratch))
 		return;
 	Matrix2d     covariance;
 	const double reach = onSurface * voter.surface.scale;

@@ -11,13 +11,15 @@ struct OutlierVoter {
 	// How well the points the surface was fitted to surround a point.
 	enum class Support { Inside, Rim, Outside };
 
-	Index              centre    = 0;   // a point of the cloud
-	Index              neighbors = 0;   // asked for
-	SurfacePatch       surface;         // invalid: no majority on one surface, and no vote
-	double             spacing = 0.0;   // of the points on the surface
-	double             noise   = 0.0;   // of the surface around, from several voters
-	bool               bent    = false; // over an edge, by its deviation
-	std::vector<Index> ball;            // all points it may judge, also those rejected before
+	Index        centre    = 0; // a point of the cloud
+	Index        neighbors = 0; // asked for
+	SurfacePatch surface;       // invalid: no majority on one surface, and no vote
+	double       spacing = 0.0; // of the points on the surface
+	// Standard deviation of the heights of points over the surface here: the median of deviation() over the
+	// voters around, so that one voter over an edge does not set its own limit. A length.
+	double             heightDeviation = 0.0;
+	bool               overEdge        = false; // its own deviation is too large for one surface
+	std::vector<Index> ball; // all points it may judge, also those rejected before
 	Eigen::Vector2d    supportCentre = Eigen::Vector2d::Zero();
 	Eigen::Matrix2d    supportShape  = Eigen::Matrix2d::Identity(); // inverse covariance
 

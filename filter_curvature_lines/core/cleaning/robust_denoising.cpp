@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "gate_normals.h"
-#include "local_noise.h"
 #include "local_spacing.h"
 #include "patch_blend.h"
+#include "point_deviation.h"
 #include "quantile.h"
 
 namespace curvature_lines {
@@ -30,38 +30,38 @@ constexpr double minRadiusNoise = 5.0;  // a patch narrower than this many noise
 constexpr double freeStep       = 1.4;
 constexpr double maxFreeRadius  = 15.0;
 constexpr double freeTolerance  = 1.02; // of scores over the best: the end of a ladder
-constexpr double bentStep       = 1.12;
-constexpr double bentStart      = 0.8; // of the free radius
-constexpr double maxBentRadius  = 25.0;
-constexpr double bentTolerance  = 1.01;
+constexpr double arcStep        = 1.12;
+constexpr double arcStart       = 0.8; // of the free radius
+constexpr double maxArcRadius   = 25.0;
+constexpr double arcTolerance   = 1.01;
 // Scores as good as the same: the wider patch has less variance.
-constexpr double bentTie        = 1.001;
-constexpr double gatedStep      = 1.3;
-constexpr double maxGatedRadius = 17.0;
-constexpr double gatedTolerance = 1.015;
-constexpr double minPilotRadius = 3.2;
-constexpr double pilotNoise     = 8.0; // noise units across which an edge is told from noise
-constexpr double maxFlagRadius  = 6.3;
-constexpr double fewestPatches  = 6.0; // in a cloud, of n / radius^2 points
-constexpr double fewPoints      = 0.1; // share of the points that a ladder does not wait for
+constexpr double arcTie           = 1.001;
+constexpr double oneFaceStep      = 1.3;
+constexpr double maxOneFaceRadius = 17.0;
+constexpr double oneFaceTolerance = 1.015;
+constexpr double minPilotRadius   = 3.2;
+constexpr double pilotNoise       = 8.0; // noise units across which an edge is told from noise
+constexpr double maxFlagRadius    = 6.3;
+constexpr double fewestPatches    = 6.0; // in a cloud, of n / radius^2 points
+constexpr double fewPoints        = 0.1; // share of the points that a ladder does not wait for
 // Bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2.
 constexpr double unitExponent = 0.2; // of noise times spacing
 
-constexpr Index  fewestPoints    = 8; // a quadric and a residual
-constexpr Index  testPoints      = 5000;
-constexpr double testOverlap     = 19.0;
-constexpr double maxResidual     = 3.0;  // noise units, in scores
-constexpr double minPurity       = 0.5;  // of a point that tells about smooth surfaces
-constexpr double edgePurity      = 0.01; // of a point beside an edge without doubt
-constexpr double fewEdges        = 0.01; // share of such points
-constexpr double minPlainShare   = 0.1;
-constexpr double strictPurity    = 2.0;
-constexpr double mildPurity      = 1.0;
-constexpr double pilotAcceptance = 2.0; // noise units
-constexpr double gatedAcceptance = 3.0;
-constexpr double sharpPurity     = 0.5;  // of smooth patches, below which edges are looked for
-constexpr double sameSide        = 1e-3; // least weight of a neighbour across an edge
-constexpr Index  gainNeighbors   = 24;
+constexpr Index  fewestPoints      = 8; // a quadric and a residual
+constexpr Index  testPoints        = 5000;
+constexpr double testOverlap       = 19.0;
+constexpr double maxResidual       = 3.0;  // noise units, in scores
+constexpr double minPurity         = 0.5;  // of a point that tells about smooth surfaces
+constexpr double edgePurity        = 0.01; // of a point beside an edge without doubt
+constexpr double fewEdges          = 0.01; // share of such points
+constexpr double minOffEdgeShare   = 0.1;
+constexpr double strictPurity      = 2.0;
+constexpr double mildPurity        = 1.0;
+constexpr double pilotAcceptance   = 2.0; // noise units
+constexpr double oneFaceAcceptance = 3.0;
+constexpr double sharpPurity       = 0.5;  // of smooth patches, below which edges are looked for
+constexpr double sameSide          = 1e-3; // least weight of a neighbour across an edge
+constexpr Index  gainNeighbors     = 24;
 // of a squared residual by gates: below it the gate only costs
 constexpr double smoothGain = 0.1;
 constexpr double sharpGain  = 0.3; // above it, it is an edge
@@ -87,21 +87,21 @@ public:
 private:
 	Index size() const { return m_input.cloud.size(); }
 	void prepare(const Progress& progress);
-	void findNoise(const Progress& progress);
-	void findPlainPoints(const Progress& progress);
+	void findPointDeviation(const Progress& progress);
+	void findPointsOffEdges(const Progress& progress);
 	double freeRadius(const Progress& progress) const;
-	double bentRadius(const BlendGuide& guide, double start, const Progress& progress) const;
+	double arcRadius(const BlendGuide& guide, double start, const Progress& progress) const;
 	Candidate smoothCandidate(const Progress& progress) const;
 	PatchBlend edgePilot(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
-	BlendOptions gatedOptions(std::vector<double> radius) const;
+	BlendOptions oneFaceOptions(std::vector<double> radius) const;
 	Candidate sharpCandidate(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	std::vector<double> pilotRadii(const Candidate& smooth) const;
 	std::vector<double> sharpShare(
 		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
 	void sharpen(Candidate& smooth, const Progress& progress) const;
-	void leaveStrays(PatchBlend& blend) const;
+	void undoFarMoves(PatchBlend& blend) const;
 	bool fits(const std::vector<double>& radii) const;
 	void findUnits();
 	std::vector<double> radii(double factor) const; // of units
@@ -118,14 +118,14 @@ private:
 	std::optional<BlendGuide> m_start;      // the input itself
 	std::vector<Index>        m_everywhere; // all points
 	std::vector<Index>        m_test;       // points that scores are taken from
-	std::vector<Index>        m_plain;      // of m_test, off the edges
+	std::vector<Index>        m_offEdges;   // of m_test, off the edges
 	std::vector<double>       m_least;      // radius per point, a length: wider than the noise
 	std::vector<double>       m_unit;       // of radii per point, a length
 };
 
 RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
 		m_options(options), m_input{SpatialOrder(cloud.positions), {}, {}, {}},
-		m_everywhere(cloud.size()), m_test(m_input.order.sample(testPoints)), m_plain(m_test)
+		m_everywhere(cloud.size()), m_test(m_input.order.sample(testPoints)), m_offEdges(m_test)
 {
 	m_input.cloud = {m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
 	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
@@ -178,7 +178,8 @@ Candidate RobustDenoiser::candidate(
 	Candidate c{options.radius, blendPatches(m_input, guide, options, targets, progress), {}};
 	c.loss.reserve(size());
 	for (Index i = 0; i < size(); ++i) {
-		const double e = std::min(std::abs(c.blend.residual[i]) / m_input.noise[i], maxResidual);
+		const double e =
+			std::min(std::abs(c.blend.residual[i]) / m_input.pointDeviation[i], maxResidual);
 		c.loss.push_back(e * e);
 	}
 	return c;
@@ -192,9 +193,9 @@ double RobustDenoiser::score(const Candidate& candidate, const std::vector<Index
 	return sum / double(points.size());
 }
 
-void RobustDenoiser::findNoise(const Progress& progress)
+void RobustDenoiser::findPointDeviation(const Progress& progress)
 {
-	m_input.noise.assign(size(), m_options.noise);
+	m_input.pointDeviation.assign(size(), m_options.noise);
 	m_least = m_input.spacing;
 	for (double& radius : m_least)
 		radius *= smallestRadius;
@@ -202,17 +203,17 @@ void RobustDenoiser::findNoise(const Progress& progress)
 	options.overlap = testOverlap;
 	for (int k = 0;; ++k) {
 		if (m_options.noise <= 0.0) {
-			options.radius = m_least;
-			m_input.noise  = localNoise(
-                blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
-                m_input.cloud,
-                m_input.order);
+			options.radius         = m_least;
+			m_input.pointDeviation = pointDeviation(
+				blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
+				m_input.cloud,
+				m_input.order);
 		}
 		std::vector<double> wider(size());
 		Index               grown = 0;
 		for (Index i = 0; i < size(); ++i) {
-			wider[i] =
-				std::clamp(minRadiusNoise * m_input.noise[i], m_least[i], noiseStep * m_least[i]);
+			wider[i] = std::clamp(
+				minRadiusNoise * m_input.pointDeviation[i], m_least[i], noiseStep * m_least[i]);
 			grown += wider[i] > noiseSettled * m_least[i];
 		}
 		if (double(grown) <= fewPoints * double(size()) || !fits(wider))
@@ -226,14 +227,14 @@ void RobustDenoiser::findUnits()
 {
 	m_unit.resize(size());
 	for (Index i = 0; i < size(); ++i)
-		m_unit[i] = std::pow(m_input.noise[i] * m_input.spacing[i], unitExponent);
+		m_unit[i] = std::pow(m_input.pointDeviation[i] * m_input.spacing[i], unitExponent);
 	const double middle = quantile(inSpacings(m_unit), 0.5);
 	for (double& unit : m_unit)
 		unit /= middle;
 }
 
 // Edges would make any wide patch look wrong, and the whole cloud would be smoothed too little.
-void RobustDenoiser::findPlainPoints(const Progress& progress)
+void RobustDenoiser::findPointsOffEdges(const Progress& progress)
 {
 	BlendOptions options;
 	options.purity = strictPurity;
@@ -242,21 +243,21 @@ void RobustDenoiser::findPlainPoints(const Progress& progress)
 		options.radius[i] = std::max(
 			m_least[i],
 			std::clamp(
-				pilotNoise * m_input.noise[i],
+				pilotNoise * m_input.pointDeviation[i],
 				minPilotRadius * m_input.spacing[i],
 				maxFlagRadius * m_input.spacing[i]));
 	const PatchBlend   blend = blendPatches(m_input, *m_start, options, m_test, progress);
-	std::vector<Index> plain;
+	std::vector<Index> offEdges;
 	Index              clear = 0;
 	for (const Index i : m_test) {
 		if (blend.purity[i] > minPurity)
-			plain.push_back(i);
+			offEdges.push_back(i);
 		clear += blend.purity[i] < edgePurity;
 	}
 	// To leave out the points that are noisy by chance would favour the radius they were told at.
 	const double share = 1.0 / double(m_test.size());
-	if (share * clear > fewEdges && share * double(plain.size()) > minPlainShare)
-		m_plain = std::move(plain);
+	if (share * clear > fewEdges && share * double(offEdges.size()) > minOffEdgeShare)
+		m_offEdges = std::move(offEdges);
 }
 
 double RobustDenoiser::freeRadius(const Progress& progress) const
@@ -272,7 +273,7 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 	double best = std::numeric_limits<double>::infinity(), radius = factor;
 	for (int k = 0; factor < widest; ++k, factor *= freeStep) {
 		options.radius = radii(factor);
-		const double s = score(candidate(*m_start, options, m_test, rung(progress, k)), m_plain);
+		const double s = score(candidate(*m_start, options, m_test, rung(progress, k)), m_offEdges);
 		if (s < best)
 			radius = factor;
 		best = std::min(best, s);
@@ -283,22 +284,22 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 }
 
 double
-RobustDenoiser::bentRadius(const BlendGuide& guide, double start, const Progress& progress) const
+RobustDenoiser::arcRadius(const BlendGuide& guide, double start, const Progress& progress) const
 {
 	if (m_options.radius > 0.0)
 		return m_options.radius;
 	BlendOptions options;
-	options.support = Support::Bent;
+	options.support = Support::ArcLength;
 	options.purity  = mildPurity;
 	options.overlap = testOverlap;
 	double best = std::numeric_limits<double>::infinity(), radius = start;
-	for (int k = 0; start < maxBentRadius; ++k, start *= bentStep) {
+	for (int k = 0; start < maxArcRadius; ++k, start *= arcStep) {
 		options.radius = radii(start);
-		const double s = score(candidate(guide, options, m_test, rung(progress, k)), m_plain);
+		const double s = score(candidate(guide, options, m_test, rung(progress, k)), m_offEdges);
 		best           = std::min(best, s);
-		if (s <= bentTie * best)
+		if (s <= arcTie * best)
 			radius = start;
-		if (s > bentTolerance * best || !fits(options.radius))
+		if (s > arcTolerance * best || !fits(options.radius))
 			break;
 	}
 	return radius;
@@ -311,16 +312,16 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 	options.radius  = radii(factor);
 	options.purity  = strictPurity;
 	Candidate c     = candidate(*m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
-	options.support = Support::Bent;
+	options.support = Support::ArcLength;
 	options.purity  = mildPurity;
-	double start    = bentStart * factor;
+	double start    = arcStart * factor;
 	for (int pass = 0; pass < 2; ++pass) {
 		const BlendGuide guide(c.blend.positions, c.blend.normals);
 		const Progress   part = progress.sub(0.4 + 0.3 * pass, 0.7 + 0.3 * pass, stage);
-		factor                = bentRadius(guide, start, part.sub(0.0, 0.6, stage));
+		factor                = arcRadius(guide, start, part.sub(0.0, 0.6, stage));
 		options.radius        = radii(factor);
 		c                     = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
-		start                 = factor / bentStep;
+		start                 = factor / arcStep;
 	}
 	return c;
 }
@@ -330,7 +331,7 @@ std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
 	std::vector<double> result(size());
 	for (Index i = 0; i < size(); ++i) {
 		const double wide =
-			std::max(minPilotRadius * m_input.spacing[i], pilotNoise * m_input.noise[i]);
+			std::max(minPilotRadius * m_input.spacing[i], pilotNoise * m_input.pointDeviation[i]);
 		result[i] = std::max(m_least[i], std::min(wide, smooth.radius[i]));
 	}
 	return result;
@@ -354,17 +355,17 @@ PatchBlend RobustDenoiser::edgePilot(
 	}
 	const BlendGuide guide(std::move(positions), std::move(normals));
 	return blendPatches(
-		m_input, guide, gatedOptions(options.radius), targets, progress.sub(0.5, 1.0, stage));
+		m_input, guide, oneFaceOptions(options.radius), targets, progress.sub(0.5, 1.0, stage));
 }
 
-BlendOptions RobustDenoiser::gatedOptions(std::vector<double> radius) const
+BlendOptions RobustDenoiser::oneFaceOptions(std::vector<double> radius) const
 {
 	BlendOptions options;
-	options.support    = Support::Gated;
-	options.radius     = std::move(radius);
-	options.gateWidth  = m_options.sharpness;
-	options.purity     = mildPurity;
-	options.acceptance = gatedAcceptance;
+	options.support     = Support::OneFace;
+	options.radius      = std::move(radius);
+	options.normalWidth = m_options.sharpness;
+	options.purity      = mildPurity;
+	options.acceptance  = oneFaceAcceptance;
 	return options;
 }
 
@@ -372,9 +373,9 @@ Candidate RobustDenoiser::sharpCandidate(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
 	PatchBlend     pilot     = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
-	BlendOptions   options   = gatedOptions(pilotRadii(smooth));
+	BlendOptions   options   = oneFaceOptions(pilotRadii(smooth));
 	const Progress ladder    = progress.sub(0.2, 0.9, stage);
-	const double   last      = m_options.radius > 0.0 ? m_options.radius : maxGatedRadius;
+	const double   last      = m_options.radius > 0.0 ? m_options.radius : maxOneFaceRadius;
 	double         bestScore = std::numeric_limits<double>::infinity();
 	Candidate      best;
 	for (int k = 0;; ++k) {
@@ -387,8 +388,8 @@ Candidate RobustDenoiser::sharpCandidate(
 			best      = std::move(c);
 		}
 		for (double& radius : options.radius)
-			radius *= gatedStep;
-		if (s > gatedTolerance * bestScore || quantile(inSpacings(options.radius), 0.5) > last ||
+			radius *= oneFaceStep;
+		if (s > oneFaceTolerance * bestScore || quantile(inSpacings(options.radius), 0.5) > last ||
 		    !fits(options.radius))
 			break;
 	}
@@ -447,7 +448,7 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 }
 
 // It is an outlier, or was taken for one of another face.
-void RobustDenoiser::leaveStrays(PatchBlend& blend) const
+void RobustDenoiser::undoFarMoves(PatchBlend& blend) const
 {
 	for (Index i = 0; i < size(); ++i)
 		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() >
@@ -458,19 +459,19 @@ void RobustDenoiser::leaveStrays(PatchBlend& blend) const
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
 	prepare(progress.sub(0.0, 0.05, stage));
-	findNoise(progress.sub(0.05, 0.15, stage));
+	findPointDeviation(progress.sub(0.05, 0.15, stage));
 	findUnits();
-	findPlainPoints(progress.sub(0.15, 0.2, stage));
+	findPointsOffEdges(progress.sub(0.15, 0.2, stage));
 	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
 
-	leaveStrays(cleaned.blend);
+	undoFarMoves(cleaned.blend);
 
 	RobustDenoisingResult result;
-	result.positions = m_input.order.restore(cleaned.blend.positions);
-	result.normals   = m_input.order.restore(cleaned.blend.normals);
-	result.noise     = quantile(m_input.noise, 0.5);
-	result.radius    = quantile(inSpacings(cleaned.radius), 0.5);
+	result.positions      = m_input.order.restore(cleaned.blend.positions);
+	result.normals        = m_input.order.restore(cleaned.blend.normals);
+	result.pointDeviation = quantile(m_input.pointDeviation, 0.5);
+	result.radius         = quantile(inSpacings(cleaned.radius), 0.5);
 	return result;
 }
 

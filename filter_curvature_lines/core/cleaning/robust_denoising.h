@@ -16,8 +16,10 @@ struct RobustDenoisingOptions {
 
 struct RobustDenoisingResult {
 	Eigen::Matrix3Xd positions, normals; // 3 x N
-	double           noise  = 0.0; // used, a length; where it varies the median over the points
-	double           radius = 0.0; // used, in local spacings; likewise
+	// Used: the option, or pointDeviation() of the smallest patches (point_deviation.h), the median over the
+	// points; a length.
+	double pointDeviation = 0.0;
+	double radius         = 0.0; // used, in local spacings; likewise
 };
 
 RobustDenoisingResult denoiseRobustly(

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "outlier_appeal.h"
+#include "outlier_groups.h"
 #include "quantile.h"
 #include "spatial_order.h"
 
@@ -21,17 +21,17 @@ constexpr Index  fewestNeighbors = 24;
 constexpr Index  mostNeighbors   = 400;
 constexpr Index  smallestShare   = 25; // a voter sees at most this part of the cloud
 constexpr Index  votesPerPoint   = 50;
-constexpr double surfaceNoises   = 7.0; // radius of a voter in noise units, at least
+constexpr double minRadius       = 7.0; // radius of a voter in noise units, at least
 constexpr double neighborGrowth  = 1.2; // fewer more are not worth a new fit
 constexpr Index  pilotVoters     = 500; // tell how many points voters need
 constexpr int    pilotRounds     = 2;
 constexpr double quietPart       = 0.25; // of the cloud needs fewer, and must not be given more
-constexpr Index  noiseWitnesses  = 20;   // voters whose deviations make the noise, at least
-constexpr double bentOverAnEdge  = 1.5;  // noise units of deviation
+constexpr Index  deviationVoters = 20;   // voters whose deviations make the noise, at least
+constexpr double overEdgeRatio   = 1.5;  // noise units of deviation
 constexpr double isolatedShare   = 0.25; // of the usual number of votes
-// Outliers that fill a volume make voters of their own: sparse and, for a surface, noisy.
+// Outliers that fill a volume make voters of their own: sparse and, for a surface, thicker.
 constexpr double sparse           = 3.5;       // times the usual distance to the 6th neighbour
-constexpr double noisy            = 3.0;       // times the usual noise
+constexpr double thicker          = 3.0;       // times the usual noise
 constexpr double thick            = 0.3;       // noise over the spacing: not just a misfit
 constexpr double doubtfulShare    = 1.8 / 3.5; // of the sensitivity
 constexpr Index  groupSize        = 8;
@@ -45,15 +45,15 @@ public:
 	RobustVote(const Matrix3Xd& positions, double sensitivity, const Progress& progress);
 	void fitVoters(const Progress& progress);
 	bool vote(const Progress& progress); // true when something changed
-	double noise() const;
-	void hearGroups(const Progress& progress);
+	double heightDeviation() const;
+	void restoreLargeGroups(const Progress& progress);
 	OutlierResult result() const;
 
 private:
 	void chooseSize(const Progress& progress);
-	void seatVoters(Index step);
-	void fitSeated(const Progress& progress);
-	void measureNoise(const Progress& progress);
+	void placeVoters(Index step);
+	void fitPlaced(const Progress& progress);
+	void measureHeightDeviation(const Progress& progress);
 	void collectVoters();
 	void rejectByVerdict(std::vector<char>& rejected);
 	void rejectGroups(std::vector<char>& rejected, const Progress& progress) const;
@@ -94,8 +94,8 @@ RobustVote::RobustVote(const Matrix3Xd& positions, double sensitivity, const Pro
 void RobustVote::chooseSize(const Progress& progress)
 {
 	for (int round = 0; round < pilotRounds && m_largest > neighborGrowth * m_neighbors; ++round) {
-		seatVoters(std::max<Index>(1, size() / pilotVoters));
-		fitSeated(progress.sub(0.5 * round, 0.5 * (round + 1), "Measuring the noise"));
+		placeVoters(std::max<Index>(1, size() / pilotVoters));
+		fitPlaced(progress.sub(0.5 * round, 0.5 * (round + 1), "Measuring the noise"));
 		std::vector<double> wanted;
 		for (const OutlierVoter& voter : m_voters)
 			wanted.push_back(neighborsWanted(voter));
@@ -111,7 +111,7 @@ Index RobustVote::neighborsWanted(const OutlierVoter& voter) const
 {
 	if (!voter.surface.valid)
 		return voter.neighbors;
-	const double radius = surfaceNoises * voter.noise / voter.spacing;
+	const double radius = minRadius * voter.heightDeviation / voter.spacing;
 	const double inside = EIGEN_PI * radius * radius;
 	const auto   wanted =
 		static_cast<Index>(std::min(inside, double(std::min(mostNeighbors, m_largest))));
@@ -119,26 +119,26 @@ Index RobustVote::neighborsWanted(const OutlierVoter& voter) const
 }
 
 // A random part of the cloud, and the points rejected before: few others judge those far from everything.
-void RobustVote::seatVoters(Index step)
+void RobustVote::placeVoters(Index step)
 {
-	std::vector<Index> seat(size(), -1);
+	std::vector<Index> voterAt(size(), -1);
 	for (std::size_t v = 0; v < m_voters.size(); ++v)
-		seat[m_voters[v].centre] = static_cast<Index>(v);
+		voterAt[m_voters[v].centre] = static_cast<Index>(v);
 	std::vector<OutlierVoter> voters;
 	std::vector<char>         stale;
 	for (Index i = 0; i < size(); ++i) {
 		if (m_order.rank[i] % step != 0 && !m_rejected[i])
 			continue;
-		if (seat[i] < 0) {
+		if (voterAt[i] < 0) {
 			voters.emplace_back();
 			voters.back().centre    = i;
 			voters.back().neighbors = m_neighbors;
 			stale.push_back(1);
 			continue;
 		}
-		voters.push_back(std::move(m_voters[seat[i]]));
+		voters.push_back(std::move(m_voters[voterAt[i]]));
 		const Index wanted = neighborsWanted(voters.back());
-		stale.push_back(m_stale[seat[i]] || wanted != voters.back().neighbors);
+		stale.push_back(m_stale[voterAt[i]] || wanted != voters.back().neighbors);
 		voters.back().neighbors = wanted;
 	}
 	m_voters = std::move(voters);
@@ -147,11 +147,11 @@ void RobustVote::seatVoters(Index step)
 
 void RobustVote::fitVoters(const Progress& progress)
 {
-	seatVoters(std::max<Index>(1, m_neighbors / votesPerPoint));
-	fitSeated(progress);
+	placeVoters(std::max<Index>(1, m_neighbors / votesPerPoint));
+	fitPlaced(progress);
 }
 
-void RobustVote::fitSeated(const Progress& progress)
+void RobustVote::fitPlaced(const Progress& progress)
 {
 	std::vector<Index> active;
 	for (Index i = 0; i < size(); ++i)
@@ -167,23 +167,23 @@ void RobustVote::fitSeated(const Progress& progress)
 			if (m_stale[v])
 				fitVoter(m_voters[v], cloud);
 		});
-	measureNoise(progress.sub(0.9, 1.0, "Measuring the noise"));
+	measureHeightDeviation(progress.sub(0.9, 1.0, "Measuring the noise"));
 }
 
-void RobustVote::measureNoise(const Progress& progress)
+void RobustVote::measureHeightDeviation(const Progress& progress)
 {
 	std::vector<double> deviations;
-	std::vector<Index>  witnesses;
+	std::vector<Index>  accepted;
 	for (std::size_t v = 0; v < m_voters.size(); ++v)
 		if (m_voters[v].surface.valid && !m_rejected[m_voters[v].centre])
-			witnesses.push_back(static_cast<Index>(v));
-	Matrix3Xd origins(3, witnesses.size());
-	for (std::size_t k = 0; k < witnesses.size(); ++k) {
-		origins.col(k) = m_voters[witnesses[k]].surface.origin;
-		deviations.push_back(m_voters[witnesses[k]].deviation());
+			accepted.push_back(static_cast<Index>(v));
+	Matrix3Xd origins(3, accepted.size());
+	for (std::size_t k = 0; k < accepted.size(); ++k) {
+		origins.col(k) = m_voters[accepted[k]].surface.origin;
+		deviations.push_back(m_voters[accepted[k]].deviation());
 	}
 	const NeighborSearch search(origins);
-	const Index          around = std::max(noiseWitnesses, 2 * votesPerPoint);
+	const Index          around = std::max(deviationVoters, 2 * votesPerPoint);
 	parallelFor(static_cast<Index>(m_voters.size()), progress, [&](Index v) {
 		OutlierVoter& voter = m_voters[v];
 		if (!voter.surface.valid)
@@ -192,8 +192,8 @@ void RobustVote::measureNoise(const Progress& progress)
 		near.clear();
 		for (const Index k : search.nearest(voter.surface.origin, around))
 			near.push_back(deviations[k]);
-		voter.noise = near.empty() ? voter.deviation() : medianInPlace(near);
-		voter.bent  = voter.deviation() > bentOverAnEdge * voter.noise;
+		voter.heightDeviation = near.empty() ? voter.deviation() : medianInPlace(near);
+		voter.overEdge        = voter.deviation() > overEdgeRatio * voter.heightDeviation;
 	});
 }
 
@@ -220,14 +220,14 @@ void RobustVote::rejectByVerdict(std::vector<char>& rejected)
 	std::vector<double> counts, crowding = m_crowding;
 	for (const Verdict& verdict : m_verdicts)
 		counts.push_back(verdict.votes);
-	const double fewest       = isolatedShare * medianInPlace(counts);
-	const double noCrowd      = sparse * medianInPlace(crowding);
-	const double tooMuchNoise = noisy * noise();
-	m_isolated                = 0;
+	const double fewest   = isolatedShare * medianInPlace(counts);
+	const double noCrowd  = sparse * medianInPlace(crowding);
+	const double tooThick = thicker * heightDeviation();
+	m_isolated            = 0;
 	for (Index i = 0; i < size(); ++i) {
 		Verdict&   verdict = m_verdicts[i];
-		const bool volume  = m_crowding[i] > noCrowd && verdict.noise > tooMuchNoise &&
-		                    verdict.noise > thick * verdict.spacing;
+		const bool volume  = m_crowding[i] > noCrowd && verdict.heightError > tooThick &&
+		                    verdict.heightError > thick * verdict.spacing;
 		const bool isolated =
 			verdict.votes == 0 || volume || (verdict.lonely && verdict.votes < fewest);
 		if (isolated)
@@ -258,7 +258,7 @@ void RobustVote::rejectGroups(std::vector<char>& rejected, const Progress& progr
 		Vector3d       sum     = verdict.toSurface;
 		for (const Index j : peers[d])
 			sum += m_verdicts[j].toSurface;
-		const double error = verdict.noise * std::sqrt(peers[d].size() + 1.0);
+		const double error = verdict.heightError * std::sqrt(peers[d].size() + 1.0);
 		rejected[doubtful[d]] =
 			sum.dot(verdict.toSurface.normalized()) > groupSensitivity * m_sensitivity * error;
 	}
@@ -309,19 +309,19 @@ bool RobustVote::vote(const Progress& progress)
 	return replaceRejected(rejected);
 }
 
-void RobustVote::hearGroups(const Progress& progress)
+void RobustVote::restoreLargeGroups(const Progress& progress)
 {
 	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
-	restoreGroups(cloud, m_verdicts, noise(), m_sensitivity, m_rejected, progress);
+	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, progress);
 }
 
-double RobustVote::noise() const
+double RobustVote::heightDeviation() const
 {
-	std::vector<double> noise;
+	std::vector<double> deviations;
 	for (const OutlierVoter& voter : m_voters)
 		if (voter.surface.valid)
-			noise.push_back(voter.noise);
-	return noise.empty() ? 0.0 : medianInPlace(noise);
+			deviations.push_back(voter.heightDeviation);
+	return deviations.empty() ? 0.0 : medianInPlace(deviations);
 }
 
 OutlierResult RobustVote::result() const
@@ -333,8 +333,8 @@ OutlierResult RobustVote::result() const
 		result.outlier[m_order.source[i]] = m_rejected[i];
 		result.score[m_order.source[i]]   = m_verdicts[i].against;
 	}
-	result.isolated = m_isolated;
-	result.noise    = noise();
+	result.isolated        = m_isolated;
+	result.heightDeviation = heightDeviation();
 	return result;
 }
 
@@ -352,17 +352,17 @@ OutlierResult rejectByRobustVotes(
 		votes.fitVoters(part.sub(0.0, 0.8, "Fitting surfaces"));
 		changed = votes.vote(part.sub(0.8, 1.0, "Voting"));
 	}
-	votes.hearGroups(progress.sub(0.95, 1.0, "Hearing groups again"));
+	votes.restoreLargeGroups(progress.sub(0.95, 1.0, "Restoring groups"));
 	OutlierResult result = votes.result();
 	result.roundsUsed    = used;
 	return result;
 }
 
-double surfaceNoise(const Matrix3Xd& positions, const Progress& progress)
+double voterHeightDeviation(const Matrix3Xd& positions, const Progress& progress)
 {
 	RobustVote votes(positions, 0.0, progress.sub(0.0, 0.1, "Measuring the noise"));
 	votes.fitVoters(progress.sub(0.1, 1.0, "Measuring the noise"));
-	return votes.noise();
+	return votes.heightDeviation();
 }
 
 } // namespace curvature_lines

@@ -15,7 +15,7 @@ OutlierResult rejectByRobustVotes(
 	Index                   rounds,
 	const Progress&         progress = {});
 
-// The same voters' median deviation from the points around them (length).
-double surfaceNoise(const Eigen::Matrix3Xd& positions, const Progress& progress = {});
+// OutlierResult::heightDeviation without a vote.
+double voterHeightDeviation(const Eigen::Matrix3Xd& positions, const Progress& progress = {});
 
 } // namespace curvature_lines

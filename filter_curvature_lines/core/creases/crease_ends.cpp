@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double reachSpacings = 4.0;
-constexpr double reachNoise    = 4.0;
-constexpr double straightOn    = 0.85; // cosine: two ends that continue each other
+constexpr double reachSpacings   = 4.0;
+constexpr double reachDeviations = 4.0;
+constexpr double straightOn      = 0.85; // cosine: two ends that continue each other
 
 double lengthOf(const CreaseTrace& trace)
 {
@@ -40,7 +40,7 @@ bool continues(const CreaseEnd& a, const CreaseEnd& b, const CreaseTracing& trac
 	       a.vertex.tangent.dot(onward.tangent) > straightOn &&
 	       a.vertex.left.dot(onward.left) > straightOn &&
 	       a.vertex.right.dot(onward.right) > straightOn &&
-	       d.norm() < reachOf(a.vertex, tracing.noise()) &&
+	       d.norm() < reachOf(a.vertex, tracing.faceDeviation()) &&
 	       along > -spacingsBehind * a.vertex.spacing &&
 	       (d - along * a.vertex.tangent).norm() < tracing.width(a.vertex);
 }
@@ -66,9 +66,9 @@ Eigen::Matrix3Xd positionsOf(const std::vector<CreaseEnd>& ends)
 	return positions;
 }
 
-double reachOf(const CreasePoint& end, double noise)
+double reachOf(const CreasePoint& end, double deviation)
 {
-	return reachSpacings * end.spacing + reachNoise * noise;
+	return reachSpacings * end.spacing + reachDeviations * deviation;
 }
 
 double lengthInSpacings(const CreaseTrace& trace)
@@ -90,7 +90,7 @@ void joinGaps(const CreaseTracing& tracing, double step, std::vector<CreaseTrace
 	std::vector<std::tuple<double, Index, Index>> candidates; // distance, two ends
 	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
 		for (const Index b :
-		     search.within(positions.col(a), reachOf(ends[a].vertex, tracing.noise())))
+		     search.within(positions.col(a), reachOf(ends[a].vertex, tracing.faceDeviation())))
 			if (a < b && mayJoin(ends[a], ends[b]))
 				candidates.emplace_back((positions.col(b) - positions.col(a)).norm(), a, b);
 	std::sort(candidates.begin(), candidates.end());

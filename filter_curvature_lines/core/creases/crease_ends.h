@@ -21,7 +21,7 @@ std::vector<CreaseEnd> endsOf(const std::vector<CreaseTrace>& traces);
 Eigen::Matrix3Xd positionsOf(const std::vector<CreaseEnd>& ends);
 
 // Length over which points may be missing at the end of a crease.
-double reachOf(const CreasePoint& end, double noise);
+double reachOf(const CreasePoint& end, double deviation);
 
 double lengthInSpacings(const CreaseTrace& trace);
 

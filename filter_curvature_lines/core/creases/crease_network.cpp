@@ -59,7 +59,7 @@ public:
 	Creases result(double spacing) const;
 
 private:
-	double reach(const CreasePoint& v) const { return reachOf(v, m_tracing.noise()); }
+	double reach(const CreasePoint& v) const { return reachOf(v, m_tracing.faceDeviation()); }
 	// Whether the crease that ends there may end in `corner` instead.
 	bool accepts(const CreasePoint& end, const Vector3d& corner) const
 	{

@@ -16,20 +16,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  neighbors        = 64;
-constexpr double spacingsInRadius = 4.5;  // of the ball that holds so many points
-constexpr double noiseInRadius    = 6.0;  // the ball is no smaller than this many noise levels
-constexpr Index  noisePoints      = 2000; // where the noise is measured
-constexpr double largestTurn      = 0.5;  // of a normal along which a face is continued
-constexpr double groupShare       = 0.85; // of the smallest angle: normals of one face
-constexpr int    maxFaces         = 6;
-constexpr int    minMembers       = 3;
+constexpr Index  neighbors          = 64;
+constexpr double spacingsInRadius   = 4.5;  // of the ball that holds so many points
+constexpr double deviationsInRadius = 6.0;  // the ball is no smaller than this many noise levels
+constexpr Index  deviationPoints    = 2000; // where the noise is measured
+constexpr double largestTurn        = 0.5;  // of a normal along which a face is continued
+constexpr double groupShare         = 0.85; // of the smallest angle: normals of one face
+constexpr int    maxFaces           = 6;
+constexpr int    minMembers         = 3;
 // two sheets back to back are no crease
-constexpr double largestAngle    = 165.0 * EIGEN_PI / 180.0;
-constexpr double supportSpacings = 3.0; // distance from the crease to points of its faces
-constexpr double supportNoise    = 2.5;
-constexpr double sideShare       = 0.7; // of a face's points on its side of the crease
-constexpr double outlierScales   = 3.0;
+constexpr double largestAngle      = 165.0 * EIGEN_PI / 180.0;
+constexpr double supportSpacings   = 3.0; // distance from the crease to points of its faces
+constexpr double supportDeviations = 2.5;
+constexpr double sideShare         = 0.7; // of a face's points on its side of the crease
+constexpr double outlierScales     = 3.0;
 
 // The points around one that belong together, continued to other places. Holds the scratch of one thread.
 class FacesAround {
@@ -50,16 +50,16 @@ public:
 		const std::vector<SurfaceElement>& elements,
 		const NeighborSearch&              search,
 		Index                              i,
-		double                             noise,
-		double                             gate)
+		double                             deviation,
+		double                             maxDifference)
 	{
 		const Vector3d position = elements[i].position;
 		m_elements              = &elements;
 		m_near                  = search.nearest(position, neighbors);
 		m_radius                = (elements[m_near.back()].position - position).norm();
 		m_spacing               = m_radius / spacingsInRadius;
-		if (m_radius < noiseInRadius * noise) {
-			m_radius = noiseInRadius * noise;
+		if (m_radius < deviationsInRadius * deviation) {
+			m_radius = deviationsInRadius * deviation;
 			m_near   = search.within(position, m_radius);
 		}
 		m_face.assign(m_near.size(), -1);
@@ -76,7 +76,7 @@ public:
 				continue;
 			const Vector3d normal = (e.normal + turn).normalized();
 			int            face   = -1;
-			double         best   = gate;
+			double         best   = maxDifference;
 			for (int f = 0; f < m_faces; ++f) {
 				const double difference = (sums[f].normalized() - normal).norm();
 				if (difference < best) {
@@ -199,7 +199,7 @@ bool meet(
 	FacesAround&    around,
 	int             face,
 	const Vector3d& position,
-	double          noise,
+	double          deviation,
 	double          minAngle,
 	CreasePoint&    result)
 {
@@ -232,7 +232,8 @@ bool meet(
 	result.spacing    = around.spacing();
 	result.weight =
 		ballKernel((foot - position).squaredNorm() / (around.radius() * around.radius()));
-	const double reach = std::max(supportSpacings * around.spacing(), supportNoise * noise);
+	const double reach =
+		std::max(supportSpacings * around.spacing(), supportDeviations * deviation);
 	return around.supports(0, foot, own.normal.cross(result.tangent), reach) &&
 	       around.supports(face, foot, result.tangent.cross(other.normal), reach);
 }
@@ -254,29 +255,29 @@ CreasePoints findCreasePoints(
 	double                             minAngle,
 	const Progress&                    progress)
 {
-	const auto          n    = static_cast<Index>(elements.size());
-	const double        gate = groupShare * minAngle;
+	const auto          n             = static_cast<Index>(elements.size());
+	const double        maxDifference = groupShare * minAngle;
 	CreasePoints        result;
-	std::vector<double> heights(std::min(n, noisePoints), -1.0);
+	std::vector<double> heights(std::min(n, deviationPoints), -1.0);
 	parallelFor(static_cast<Index>(heights.size()), {}, [&](Index i) {
 		FacesAround& around = FacesAround::ofThisThread();
-		around.group(elements, search, i, 0.0, gate);
+		around.group(elements, search, i, 0.0, maxDifference);
 		if (const auto plane = around.planeAt(0, elements[i].position, i); plane.valid)
 			heights[i] = std::abs(plane.height);
 	});
 	heights.erase(std::remove(heights.begin(), heights.end(), -1.0), heights.end());
 	if (heights.empty())
 		return result;
-	result.noise = 1.4826 * medianInPlace(heights);
+	result.faceDeviation = 1.4826 * medianInPlace(heights);
 
 	std::vector<std::vector<CreasePoint>> rows(n);
 	parallelForPoints(search, progress, [&](Index i) {
 		FacesAround& around = FacesAround::ofThisThread();
-		around.group(elements, search, i, result.noise, gate);
+		around.group(elements, search, i, result.faceDeviation, maxDifference);
 		for (int face = 1; face < around.faces(); ++face) {
 			CreasePoint point;
 			if (around.members(face) >= minMembers &&
-			    meet(around, face, elements[i].position, result.noise, minAngle, point))
+			    meet(around, face, elements[i].position, result.faceDeviation, minAngle, point))
 				rows[i].push_back(point);
 		}
 	});

@@ -15,14 +15,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double window        = 3.0; // local spacings along the curve
-constexpr double widthSpacings = 1.5;
-constexpr double widthNoise    = 2.5;
-constexpr double sameTangent   = 0.7; // cosines
-constexpr double sameNormal    = 0.75;
-constexpr int    minSupport    = 3; // points within one spacing along the curve
-constexpr double tracedShare   = 0.6;
-constexpr double robustScale   = 2.5;
+constexpr double window          = 3.0; // local spacings along the curve
+constexpr double widthSpacings   = 1.5;
+constexpr double widthDeviations = 2.5;
+constexpr double sameTangent     = 0.7; // cosines
+constexpr double sameNormal      = 0.75;
+constexpr int    minSupport      = 3; // points within one spacing along the curve
+constexpr double tracedShare     = 0.6;
+constexpr double robustScale     = 2.5;
 
 struct PolynomialAtZero {
 	Eigen::Vector2d value = Eigen::Vector2d::Zero(), slope = Eigen::Vector2d::Zero();
@@ -76,7 +76,7 @@ Eigen::Matrix3Xd CreaseTracing::positionsOf(const std::vector<CreasePoint>& poin
 
 double CreaseTracing::width(const CreasePoint& at) const
 {
-	return std::max(widthSpacings * at.spacing, widthNoise * m_points.noise);
+	return std::max(widthSpacings * at.spacing, widthDeviations * m_points.faceDeviation);
 }
 
 std::vector<Index>

@@ -25,7 +25,7 @@ public:
 	// All curves that reach minAngle (radians), with vertices `step` apart.
 	std::vector<CreaseTrace> traceAll(double step, double minAngle);
 
-	double noise() const { return m_points.noise; }
+	double faceDeviation() const { return m_points.faceDeviation; }
 	// Points further away than this belong to other curves.
 	double width(const CreasePoint& at) const;
 

@@ -21,8 +21,8 @@ constexpr double autoSpacing     = 0.7; // median point spacings
 constexpr double finest          = 0.05;
 constexpr Index  shapeNeighbors  = 28;
 constexpr int    shapeIterations = 3;
-constexpr double firstGate       = 0.5; // differences of normals
-constexpr double lastGate        = 0.25;
+constexpr double firstDifference = 0.5; // differences of normals
+constexpr double lastDifference  = 0.25;
 
 // The points in an order of their own, with the shape operator their normals tell: of those around that vary
 // linearly with the place, as they do on one side of a crease.
@@ -41,15 +41,16 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 		const std::vector<Index> near = search.nearest(own.position, shapeNeighbors);
 		const double radius = 1.05 * (elements[near.back()].position - own.position).norm();
 		thread_local std::vector<Index> same;
-		LocalSurfaceFitter&             fitter = LocalSurfaceFitter::ofThisThread();
-		SurfaceElement                  fit    = own;
-		double                          gate   = firstGate;
-		for (int it = 0; it < shapeIterations; ++it, gate = std::max(lastGate, 0.5 * gate)) {
+		LocalSurfaceFitter&             fitter        = LocalSurfaceFitter::ofThisThread();
+		SurfaceElement                  fit           = own;
+		double                          maxDifference = firstDifference;
+		for (int it = 0; it < shapeIterations;
+		     ++it, maxDifference = std::max(lastDifference, 0.5 * maxDifference)) {
 			same.clear();
 			for (const Index j : near) {
 				const Eigen::Vector3d predicted =
 					fit.normal + fit.shape * (elements[j].position - own.position);
-				if ((elements[j].normal - predicted).norm() < gate)
+				if ((elements[j].normal - predicted).norm() < maxDifference)
 					same.push_back(j);
 			}
 			SurfaceElement start = own;

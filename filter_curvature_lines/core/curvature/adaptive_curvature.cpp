@@ -42,7 +42,7 @@ public:
 		const PointSample&                           sample,
 		const CurvatureScale&                        scale,
 		const std::vector<std::pair<Index, double>>& users,
-		double                                       noise,
+		double                                       quadricResidual,
 		double                                       directBelow) :
 			m_scale(scale), m_subsets(sample, scale.height.radius),
 			m_users(positionsOf(sample.cloud, users)), m_userSearch(m_users),
@@ -56,7 +56,7 @@ public:
 					Zone{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
 				m_subsets,
 				scale,
-				noise),
+				quadricResidual),
 			m_direct(scale.normalRadius == 0.0 || scale.height.radius < directBelow),
 			m_search(m_anchors.origins())
 	{
@@ -241,7 +241,8 @@ AdaptiveSurface adaptiveSurface(
 			continue;
 		const CurvatureScale& scale = selection.scales[s];
 		progress.report(0.7 + 0.3 * s / double(selection.scales.size()));
-		const ScaleField field(sample, scale, users, selection.noise, 1.5 * selection.usualRadius);
+		const ScaleField field(
+			sample, scale, users, selection.quadricResidual, 1.5 * selection.usualRadius);
 		parallelFor(static_cast<Index>(users.size()), {}, [&](Index u) {
 			const auto [i, share] = users[u];
 			EdgeNearby           edge;

@@ -26,7 +26,7 @@ constexpr double mostFiner           = 12.0; // levels
 constexpr double ladderStep          = 1.3;
 constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
 constexpr double largestNormalRadius = 0.36;
-constexpr Index  noisePlaces         = 256;
+constexpr Index  residualPlaces      = 256;
 constexpr double smoothShare         = 1.0 / 3.0; // of the places, at least, no edge is near
 constexpr int    probeIterations     = 3;
 constexpr double largestResidual     = 0.2;  // radii, median over probes
@@ -328,13 +328,13 @@ std::vector<double> radiiHolding(const PointSample& sample, Index count)
 }
 
 // The residual of quadrics in the smallest balls that reach beyond the noisy layer.
-double noiseOf(const PointSample& sample, double smallestRadius, int levels)
+double quadricResidualOf(const PointSample& sample, double smallestRadius, int levels)
 {
 	double noise = infinity;
 	for (int level = 0; level < levels; ++level) {
 		const HeightScale   scale{smallestRadius * std::pow(ladderStep, level), 2};
 		const PointSubsets  subsets(sample, scale.radius);
-		std::vector<double> residuals(std::min<Index>(sample.cloud.size(), noisePlaces));
+		std::vector<double> residuals(std::min<Index>(sample.cloud.size(), residualPlaces));
 		parallelFor(static_cast<Index>(residuals.size()), {}, [&](Index p) {
 			const SurfaceElement element = surfaceAt(
 				subsets,
@@ -356,10 +356,10 @@ double noiseOf(const PointSample& sample, double smallestRadius, int levels)
 // The candidate scales of one level after the other on both halves.
 class ScaleTrials {
 public:
-	ScaleTrials(const PointSample& sample, Index probes, double noise) :
+	ScaleTrials(const PointSample& sample, Index probes, double quadricResidual) :
 			m_sample(sample), m_first(blockOf(sample.cloud, 0, sample.cloud.size() / 2)),
 			m_second(blockOf(sample.cloud, sample.cloud.size() / 2, sample.cloud.size())),
-			m_positions(sample.cloud.positions.leftCols(probes)), m_noise(noise)
+			m_positions(sample.cloud.positions.leftCols(probes)), m_quadricResidual(quadricResidual)
 	{
 	}
 	const std::vector<Trial>& all() const { return m_trials; }
@@ -438,7 +438,7 @@ private:
 			if (trial.scale.normalRadius > 0.0 &&
 			    (degree == 2 ? ofAnchors.quadric : ofAnchors.quartic))
 				anchors = std::make_unique<const SurfaceAnchors>(
-					anchorFits, subsets, trial.scale, m_noise, AnchorDetail::Sketch);
+					anchorFits, subsets, trial.scale, m_quadricResidual, AnchorDetail::Sketch);
 			trial.halves[h] = estimateProbes(anchors.get(), starts, m_positions, trial.scale);
 		}
 	}
@@ -464,7 +464,7 @@ private:
 	const PointSample& m_sample;
 	const PointSample  m_first, m_second;
 	Eigen::Matrix3Xd   m_positions;
-	double             m_noise;
+	double             m_quadricResidual;
 	std::vector<Trial> m_trials;
 };
 
@@ -513,8 +513,8 @@ ScaleSelection selectScales(
 	const int levels =
 		std::max(1, 1 + int(std::log(largestHeightRadius / smallest) / std::log(ladderStep)));
 
-	selection.noise = noiseOf(sample, smallest, levels);
-	ScaleTrials run(sample, probes, selection.noise);
+	selection.quadricResidual = quadricResidualOf(sample, smallest, levels);
+	ScaleTrials run(sample, probes, selection.quadricResidual);
 	for (int level = levels - 1; level >= 0; --level) {
 		run.run(smallest * std::pow(ladderStep, level), level);
 		progress.report(double(levels - level) / levels);

@@ -25,7 +25,9 @@ struct ScaleSelection {
 	Eigen::Matrix3Xd            positions;         // where the mixtures hold
 	std::vector<ScaleMixture>   mixtures;          // one per position
 	double                      usualRadius = 0.0; // of the balls that hold just enough points
-	double                      noise       = 0.0; // standard deviation of heights (length)
+	// Root mean square of the heights of points over a quadric in the smallest ball that reaches beyond the noise,
+	// a lower quantile over the cloud; a length. Without a correction for the unknowns of the fit.
+	double quadricResidual = 0.0;
 };
 
 // `sample`: shuffled, with gate normals.

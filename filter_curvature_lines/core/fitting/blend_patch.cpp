@@ -17,8 +17,8 @@ using Support = BlendOptions::Support;
 
 // noise units that a ball reaches beyond the disk of a patch
 constexpr double slabNoise       = 3.0;
-constexpr double minBent         = 0.35; // cosine; arcs stay well below a quarter of a turn
-constexpr double maxGate         = 2.0;  // gate widths
+constexpr double minArcCosine    = 0.35; // cosine; arcs stay well below a quarter of a turn
+constexpr double maxNormalWidths = 2.0;  // gate widths
 constexpr double heightCutoff    = 5.0;  // noise units
 constexpr double growth[]        = {1.0 / 3.0, 0.6, 1.0, 1.0};
 constexpr double maxPurityExcess = 40.0;
@@ -74,7 +74,7 @@ Vector3d principalNormal(const Scratch& scratch, double reach)
 }
 
 // Arc over chord of a circular arc that turns by an angle t of this cosine: t / sin t by the continued fraction
-// of arcsin(z) / (z sqrt(1 - z^2)), z = sin(t/2), to six digits down to minBent (Abramowitz & Stegun 4.4.43).
+// of arcsin(z) / (z sqrt(1 - z^2)), z = sin(t/2), to six digits down to minArcCosine (Abramowitz & Stegun 4.4.43).
 double arcOverChord(double cosine)
 {
 	const double s = 0.5 * std::max(0.0, 1.0 - cosine); // z^2
@@ -127,7 +127,7 @@ void toFrame(const SurfacePatch& patch, Scratch& scratch)
 }
 
 // Grows from the centre: the gate of each step is the normal that the step before predicts.
-bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
+bool fitOneFace(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 {
 	const double cutoff = heightCutoff * noise;
 	toFrame(patch, scratch);
@@ -140,7 +140,7 @@ bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 				continue;
 			const Eigen::Vector2d slope = patch.gradient(x, y);
 			const Vector3d        predicted(-slope.x(), -slope.y(), 1.0);
-			const double          gate = gateWeight(
+			const double          gate = normalWeight(
                 (scratch.normal[k] - predicted / std::sqrt(1.0 + slope.squaredNorm()))
                     .squaredNorm() /
                 (width * width));
@@ -158,11 +158,12 @@ bool fitGated(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 	return false;
 }
 
-bool fitBent(SurfacePatch& patch, Scratch& scratch)
+bool fitByArcLength(SurfacePatch& patch, Scratch& scratch)
 {
 	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-		const Sight s = bentSight(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
-		if (s.seen)
+		const ArcCoordinates s =
+			arcCoordinates(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
+		if (s.valid)
 			addSample(scratch, s.x, s.y, s.z, supportWeight(s.x, s.y));
 	}
 	return fitPatch(patch, scratch.samples);
@@ -182,29 +183,30 @@ double purityOf(const SurfacePatch& patch, double noise, double rate)
 
 double farthestMove(const BlendInput& input, Index i)
 {
-	return farthestNoise * input.noise[i] + farthestSpacing * input.spacing[i];
+	return farthestNoise * input.pointDeviation[i] + farthestSpacing * input.spacing[i];
 }
 
 // Guides of the other supports have left the noise behind.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
-	return options.support == Support::Free ? std::hypot(radius, slabNoise * input.noise[i])
-	                                        : radius;
+	return options.support == Support::Free
+	           ? std::hypot(radius, slabNoise * input.pointDeviation[i])
+	           : radius;
 }
 
-double gateWeight(double e2)
+double normalWeight(double e2)
 {
-	return e2 < maxGate * maxGate ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
+	return e2 < maxNormalWidths * maxNormalWidths ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
 }
 
-Sight bentSight(
+ArcCoordinates arcCoordinates(
 	const SurfacePatch& patch,
 	const Vector3d&     height,
 	const Vector3d&     place,
 	const Vector3d&     normal)
 {
 	const double cosine = normal.dot(patch.frame.n);
-	if (cosine < minBent)
+	if (cosine < minArcCosine)
 		return {};
 	const double          stretch = arcOverChord(cosine) / patch.radius;
 	const Eigen::Vector2d p       = patch.frame.toPlane(place);
@@ -221,12 +223,13 @@ patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& op
 	SurfacePatch& surface = patch.surface;
 	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
 	gather(input, guide, i, reach, scratch);
-	const bool fitted = options.support == Support::Free ? fitFree(surface, reach, scratch)
-	                    : options.support == Support::Gated
-	                        ? fitGated(surface, input.noise[i], options.gateWidth, scratch)
-	                        : fitBent(surface, scratch);
-	surface.valid     = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
-	patch.purity      = purityOf(surface, input.noise[i], options.purity);
+	const bool fitted =
+		options.support == Support::Free ? fitFree(surface, reach, scratch)
+		: options.support == Support::OneFace
+			? fitOneFace(surface, input.pointDeviation[i], options.normalWidth, scratch)
+			: fitByArcLength(surface, scratch);
+	surface.valid = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
+	patch.purity  = purityOf(surface, input.pointDeviation[i], options.purity);
 	return patch;
 }
 

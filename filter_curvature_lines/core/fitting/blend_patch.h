@@ -18,7 +18,9 @@ struct BlendInput {
 	PointCloud   cloud;
 	// per point, smooth: side of the square that holds one point, a length
 	std::vector<double> spacing;
-	std::vector<double> noise; // per point: standard deviation of the positions, a length
+	// per point: standard deviation of the positions across the surface (point_deviation.h, or the
+	// caller's), a length
+	std::vector<double> pointDeviation;
 };
 
 // Where the points are thought to be: tells frames and gates. Heights are always those of the input,
@@ -38,18 +40,18 @@ struct BlendGuide {
 
 struct BlendOptions {
 	enum class Support {
-		Free,  // frame by principal components; normals only tell sheets apart. For noisy guides
-		Gated, // points whose guide normals vary linearly with the place belong: stops at edges
+		Free,    // frame by principal components; normals only tell sheets apart. For noisy guides
+		OneFace, // points whose guide normals vary linearly with the place belong: stops at edges
 		// arc lengths along the guide instead of their projection: reaches further round a bend
-		Bent,
+		ArcLength,
 	};
 	Support             support = Support::Free;
 	std::vector<double> radius; // per point, of a patch there, smooth: a length
-	double gateWidth  = 0.7;    // Gated: deviation from the linear normal that quarters a weight
-	double purity     = 0.0;    // how fast a patch loses weight as its residuals exceed the noise
-	double acceptance = 0.0;    // residual, in noise units, that quarters a weight; 0: any is taken
-	bool   edges      = false;  // Gated: points beside an edge also see the faces beyond it
-	double overlap    = 38.0;   // patches that cover a point, on average
+	double normalWidth = 0.7;   // OneFace: deviation from the linear normal that quarters a weight
+	double purity      = 0.0;   // how fast a patch loses weight as its residuals exceed the noise
+	double acceptance  = 0.0;   // residual, in noise units, that quarters a weight; 0: any is taken
+	bool   edges       = false; // OneFace: points beside an edge also see the faces beyond it
+	double overlap     = 38.0;  // patches that cover a point, on average
 };
 
 // The patch and how far its residuals fit the noise, 0..1.
@@ -62,13 +64,13 @@ BlendPatch
 patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i);
 
 // Where a bent patch sees a point: x and y from the guide, z from the input.
-struct Sight {
+struct ArcCoordinates {
 	double x = 0.0, y = 0.0, z = 0.0;
-	bool   seen = false;
+	bool   valid = false;
 };
 
 // `height` and `place`: of the input and of the guide, from the patch's origin; `normal`: of the guide.
-Sight bentSight(
+ArcCoordinates arcCoordinates(
 	const SurfacePatch&    patch,
 	const Eigen::Vector3d& height,
 	const Eigen::Vector3d& place,
@@ -78,7 +80,7 @@ Sight bentSight(
 double farthestMove(const BlendInput& input, Index i);
 
 // Geman-McClure weight of a squared residual in units of its width; 0 beyond two widths.
-double gateWeight(double e2);
+double normalWeight(double e2);
 
 // Normals that oppose each other further are of another sheet (cosine).
 constexpr double minOpposing = -0.2;

@@ -44,14 +44,14 @@ struct Scratch {
 
 // What one patch says about one point.
 struct Prediction {
-	Vector3d normal;          // of the surface there
-	Vector3d direction;       // in which the point moves
-	double   residual  = 0.0; // along it
-	double   move      = 0.0; // against it
-	double   weight    = 0.0; // inverse variance, less towards the rim of the support
-	double   gate      = 0.0; // 0..1: whether the point is on the patch's side of an edge
-	double   leverage  = 0.0; // variance of the prediction, over that of a point
-	double   influence = 0.0; // of the point on the prediction
+	Vector3d normal;             // of the surface there
+	Vector3d direction;          // in which the point moves
+	double   residual     = 0.0; // along it
+	double   move         = 0.0; // against it
+	double   weight       = 0.0; // inverse variance, less towards the rim of the support
+	double   normalWeight = 0.0; // 0..1: whether the point is on the patch's side of an edge
+	double   leverage     = 0.0; // variance of the prediction, over that of a point
+	double   influence    = 0.0; // of the point on the prediction
 };
 
 // From where the point lies in the support, x^2 + y^2 < 1.
@@ -59,7 +59,7 @@ void weigh(Prediction& p, double x, double y, double leverage, double gate)
 {
 	const double inside = std::max(0.0, 1.0 - x * x - y * y);
 	p.weight            = inside * inside / std::max(leverage, minLeverage);
-	p.gate              = gate;
+	p.normalWeight      = gate;
 	p.leverage          = leverage;
 	p.influence         = leverage * supportWeight(x, y) * gate;
 }
@@ -78,9 +78,9 @@ Prediction predict(
 		return p;
 	const SurfacePatch::Local local = surface.toLocal(position);
 	p.direction = p.normal = surface.normal(local.x, local.y);
-	const double width     = options.gateWidth;
-	const double gate      = options.support == Support::Gated
-	                             ? gateWeight((normal - p.normal).squaredNorm() / (width * width))
+	const double width     = options.normalWidth;
+	const double gate      = options.support == Support::OneFace
+	                             ? normalWeight((normal - p.normal).squaredNorm() / (width * width))
 	                             : double(p.normal.dot(normal) > minOpposing);
 	p.move = p.residual = surface.residual(local);
 	weigh(p, at.x(), at.y(), surface.leverage(local.x, local.y), gate);
@@ -88,29 +88,29 @@ Prediction predict(
 }
 
 // The point stays at its arc length and moves along the guide's normal to the predicted height.
-Prediction predictBent(
+Prediction predictByArcLength(
 	const BlendPatch& patch,
 	const Vector3d&   position,
 	const Vector3d&   place,
 	const Vector3d&   normal,
 	double            noise)
 {
-	const SurfacePatch& surface = patch.surface;
-	const Sight         sight =
-		bentSight(surface, position - surface.origin, place - surface.origin, normal);
+	const SurfacePatch&  surface = patch.surface;
+	const ArcCoordinates at =
+		arcCoordinates(surface, position - surface.origin, place - surface.origin, normal);
 	Prediction p;
-	if (!sight.seen || sight.x * sight.x + sight.y * sight.y >= 1.0)
+	if (!at.valid || at.x * at.x + at.y * at.y >= 1.0)
 		return p;
 	const double cosine = normal.dot(surface.frame.n);
 	// By arc length a height changes with the sine of the slope.
-	const Eigen::Vector2d slope = surface.gradient(sight.x, sight.y);
+	const Eigen::Vector2d slope = surface.gradient(at.x, at.y);
 	p.normal = surface.frame.n * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) -
 	           surface.frame.toSpace(slope);
 	p.direction = normal;
-	p.residual  = (sight.z - surface.height(sight.x, sight.y)) / cosine;
+	p.residual  = (at.z - surface.height(at.x, at.y)) / cosine;
 	// Isotropic noise along a surface of mean curvature H leaves the points sigma^2 H outside on average.
 	p.move = p.residual + noise * noise * surface.meanCurvature();
-	weigh(p, sight.x, sight.y, surface.leverage(sight.x, sight.y), 1.0);
+	weigh(p, at.x, at.y, surface.leverage(at.x, at.y), 1.0);
 	p.weight *= cosine * cosine; // of a residual's variance
 	return p;
 }
@@ -119,11 +119,11 @@ Prediction predictBent(
 // own face reach over an edge.
 double acceptance(const BlendInput& input, const BlendOptions& options, double residual, Index i)
 {
-	if (options.acceptance <= 0.0 || !(input.noise[i] > 0.0))
+	if (options.acceptance <= 0.0 || !(input.pointDeviation[i] > 0.0))
 		return 1.0;
 	if (std::abs(residual) > farthestMove(input, i))
 		return 0.0;
-	const double e = residual / (options.acceptance * input.noise[i]);
+	const double e = residual / (options.acceptance * input.pointDeviation[i]);
 	return 1.0 / ((1.0 + e * e) * (1.0 + e * e));
 }
 
@@ -138,7 +138,7 @@ void addFacesAcross(std::vector<FaceVote>& votes, double width, LocalFaces& face
 		double         sum                   = 0.0;
 		std::vector<FaceVote>::iterator rest = votes.begin();
 		for (const FaceVote& vote : votes) {
-			const double gate = gateWeight((vote.normal - seed).squaredNorm() / (width * width));
+			const double gate = normalWeight((vote.normal - seed).squaredNorm() / (width * width));
 			if (gate >= acrossEdge) {
 				const double w = vote.weight * gate;
 				face.normal += w * vote.normal;
@@ -245,7 +245,7 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 {
 	const Vector3d      position = m_input.cloud.positions.col(i);
 	const Vector3d      place = m_guide.positions.col(i), normal = m_guide.normals.col(i);
-	const double        noise = m_input.noise[i];
+	const double        noise = m_input.pointDeviation[i];
 	std::vector<Index>& found = Scratch::ofThisThread().near;
 	findCovering(i, found);
 	double   total = 0.0, pure = 0.0, accepted = 0.0; // weights
@@ -257,18 +257,18 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 		const BlendPatch& patch = m_patches[j];
 		if (!patch.surface.valid)
 			continue;
-		const Prediction p = m_options.support == Support::Bent
-		                         ? predictBent(patch, position, place, normal, noise)
+		const Prediction p = m_options.support == Support::ArcLength
+		                         ? predictByArcLength(patch, position, place, normal, noise)
 		                         : predict(patch, m_options, position, place, normal);
-		if (m_options.edges && p.gate < acrossEdge && p.weight > 0.0 &&
+		if (m_options.edges && p.normalWeight < acrossEdge && p.weight > 0.0 &&
 		    p.leverage < maxAcrossLeverage)
 			across.push_back(
 				{p.normal, patch.surface.origin - position, p.residual, p.weight * patch.purity});
-		const double w = p.weight * p.gate * patch.purity;
+		const double w = p.weight * p.normalWeight * patch.purity;
 		if (w <= 0.0)
 			continue;
 		const double a = w * acceptance(m_input, m_options, p.residual, i);
-		total += p.weight * p.gate;
+		total += p.weight * p.normalWeight;
 		pure += w;
 		residual += w * p.residual;
 		influence += w * p.influence;
@@ -285,7 +285,7 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 		const Vector3d n = direction.normalized();
 		LocalFaces     faces;
 		faces.face[faces.count++] = {n, center / accepted, -move.dot(n)};
-		addFacesAcross(across, m_options.gateWidth, faces);
+		addFacesAcross(across, m_options.normalWidth, faces);
 		if (faces.count > 1)
 			move = moveOntoFaces(faces);
 	}

@@ -49,8 +49,9 @@ SurfaceAnchors::SurfaceAnchors(
 	const AnchorFits&     fits,
 	const PointSubsets&   subsets,
 	const CurvatureScale& scale,
-	double                noise,
-	AnchorDetail          detail) : m_scale(scale), m_hasOutliers(fits.hasOutliers), m_noise(noise)
+	double                quadricResidual,
+	AnchorDetail          detail) :
+		m_scale(scale), m_hasOutliers(fits.hasOutliers), m_quadricResidual(quadricResidual)
 {
 	std::vector<Index> valid;
 	for (std::size_t a = 0; a < fits.fits.size(); ++a)
@@ -186,7 +187,7 @@ std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
 		if (faces.size() < 2)
 			return;
 		const double misfit = misfitOfFaces(subsets[m_places[a]], position, faces);
-		if (misfit < faceRatio * m_noise + misfitFloor * m_scale.height.radius &&
+		if (misfit < faceRatio * m_quadricResidual + misfitFloor * m_scale.height.radius &&
 		    misfit < gain * m_elements[a].residual)
 			continued[a] = nearestFace(position, std::move(faces), nullptr);
 	});
@@ -400,7 +401,7 @@ SurfaceElement SurfaceAnchors::nearestFace(
 	result.normal   = own.normal;
 	result.position = position - own.height * own.normal;
 	result.shape    = own.shape;
-	result.residual = m_noise;
+	result.residual = m_quadricResidual;
 	result.valid    = true;
 	if (edge && faces.size() > 1) {
 		const Face&  other  = faces[1];

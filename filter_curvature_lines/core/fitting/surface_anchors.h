@@ -36,7 +36,7 @@ public:
 		const AnchorFits&     fits,
 		const PointSubsets&   subsets,
 		const CurvatureScale& scale,
-		double                noise, // of the heights (length)
+		double                quadricResidual, // of the heights off edges, a length
 		AnchorDetail          detail = AnchorDetail::Full);
 
 	Index size() const { return static_cast<Index>(m_elements.size()); }
@@ -103,9 +103,9 @@ private:
 	std::unique_ptr<NeighborSearch> m_originSearch; // over m_origins
 	bool                            m_hasEdges    = false;
 	bool                            m_hasOutliers = false; // among the points anchors were tried at
-	double                          m_noise       = 0.0;
-	double                          m_jump        = 0.35;
-	double                          m_linkLength  = 0.0;
+	double                          m_quadricResidual = 0.0;
+	double                          m_jump            = 0.35;
+	double                          m_linkLength      = 0.0;
 	std::vector<char>               m_misfit; // an edge runs through the ball
 	std::vector<char>               m_atCut;  // a link of it was cut
 	NeighborLists                   m_links;

@@ -226,7 +226,7 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 		OutlierResult rejected =
 			rejectOutliers(cloud, options.outliers, progress.sub(0.0, 0.2, "Rejecting outliers"));
 		result.outlier = std::move(rejected.outlier);
-		result.noise   = rejected.noise;
+		result.noise   = rejected.heightDeviation;
 		clock.book("outliers");
 	}
 	keepInliers(cloud, result);
@@ -266,8 +266,8 @@ reconstruct(const PointCloud& cloud, const ReconstructionOptions& options, const
 		result.cloud   = {std::move(cleaned.positions), std::move(cleaned.normals)};
 		result.rmsMove = cleaned.rmsMove;
 		result.field.height.resize(0); // of the points as they were
-		if (cleaned.noise > 0.0)
-			result.noise = cleaned.noise;
+		if (cleaned.pointDeviation > 0.0)
+			result.noise = cleaned.pointDeviation;
 		clock.book("denoising");
 	}
 	if (!first)

@@ -66,7 +66,7 @@ struct ReconstructionResult {
 	LineNetwork             lines;   // TracedLines, or if keepLines
 	Creases                 creases; // PositionField
 	PositionFieldMeshResult mesh;    // TracedLines: without what is particular to position fields
-	// standard deviation of heights, if robustly cleaned of outliers or noise
+	// RobustDenoisingResult::pointDeviation; without denoising OutlierResult::heightDeviation; else 0
 	double                        noise   = 0.0;
 	double                        rmsMove = 0.0; // by denoising
 	std::map<std::string, double> seconds;       // per stage: outliers, neighborhoods, curvature, …

@@ -52,7 +52,7 @@ TEST(Denoising, RobustNeedsNoCurvature)
 	const RobustDenoisingResult direct = denoiseRobustly(correction.cloud);
 	EXPECT_EQ(result.positions, direct.positions);
 	EXPECT_EQ(result.normals, direct.normals);
-	EXPECT_EQ(result.noise, direct.noise);
+	EXPECT_EQ(result.pointDeviation, direct.pointDeviation);
 	EXPECT_EQ(result.radius, direct.radius);
 	EXPECT_EQ(result.iterations, 0);
 	expectMoves(correction.cloud, result);
@@ -74,7 +74,7 @@ TEST(Denoising, PaperMovesByCorrectedNormals)
 	EXPECT_EQ(result.normals, correction.cloud.normals);
 	EXPECT_EQ(result.iterations, direct.iterations);
 	EXPECT_LT(result.finalEnergy, result.initialEnergy);
-	EXPECT_EQ(result.noise, 0.0);
+	EXPECT_EQ(result.pointDeviation, 0.0);
 	expectMoves(wrong, result);
 }
 

@@ -109,7 +109,7 @@ Outcome reject(
 	if (found + lost > 0)
 		outcome.precision = found / (found + lost);
 	outcome.falsePositives = lost / inliers;
-	outcome.noise          = result.noise * prepared.diagonal / diagonal;
+	outcome.noise          = result.heightDeviation * prepared.diagonal / diagonal;
 	outcome.rounds         = result.roundsUsed;
 	return outcome;
 }
@@ -181,7 +181,7 @@ TEST(RobustVote, ThinSheetsStay)
 {
 	const OutlierResult result = rejectByRobustVotes(twoSheets(4000, 0.03, 0.001), 3.5, 3);
 	EXPECT_LE(std::count(result.outlier.begin(), result.outlier.end(), char(1)), 16);
-	EXPECT_NEAR(result.noise, 0.001, 0.0001);
+	EXPECT_NEAR(result.heightDeviation, 0.001, 0.0001);
 }
 
 // Three clusters of a hundred points each, more than half of what a voter sees.
@@ -308,7 +308,7 @@ TEST(RejectOutliers, DegenerateClouds)
 				options.mode      = mode;
 				const auto result = rejectOutliers(cloud, options);
 				EXPECT_EQ(static_cast<Index>(result.outlier.size()), n);
-				EXPECT_TRUE(std::isfinite(result.noise));
+				EXPECT_TRUE(std::isfinite(result.heightDeviation));
 				for (const double score : result.score)
 					EXPECT_TRUE(score >= 0.0 && score <= 1.0);
 			}

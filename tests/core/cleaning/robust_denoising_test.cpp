@@ -137,7 +137,7 @@ TEST(RobustDenoising, RemovesNoiseFromSmoothSurfacesWithoutShrinkingThem)
 		const auto       result = denoiseRobustly(noisy.cloud);
 		EXPECT_LT(noisy.remaining(result.positions, noisy.all()), c.remaining);
 		EXPECT_LT(meanNormalError(noisy, result), c.normals);
-		EXPECT_NEAR(result.noise, c.noise, 0.12 * c.noise);
+		EXPECT_NEAR(result.pointDeviation, c.noise, 0.12 * c.noise);
 		double height = 0.0;
 		for (Index i = 0; i < noisy.cloud.size(); ++i)
 			height += noisy.height(result.positions.col(i)) / noisy.cloud.size();
@@ -258,7 +258,7 @@ TEST(RobustDenoising, TakesNoiseAndRadiusAsGiven)
 	options.noise     = 0.006;
 	options.radius    = 6.0;
 	const auto result = denoiseRobustly(noisy.cloud, options);
-	EXPECT_EQ(result.noise, 0.006);
+	EXPECT_EQ(result.pointDeviation, 0.006);
 	EXPECT_EQ(result.radius, 6.0);
 	EXPECT_LT(noisy.remaining(result.positions, noisy.all()), 0.3);
 }
@@ -278,7 +278,7 @@ TEST(RobustDenoising, SameResultForAnyOrderOfThePoints)
 		ASSERT_EQ(other.positions.col(i), result.positions.col(order[i]));
 		ASSERT_EQ(other.normals.col(i), result.normals.col(order[i]));
 	}
-	EXPECT_EQ(other.noise, result.noise);
+	EXPECT_EQ(other.pointDeviation, result.pointDeviation);
 	EXPECT_EQ(other.radius, result.radius);
 }
 
@@ -309,7 +309,7 @@ TEST(RobustDenoising, MovesAndScalesWithTheCloud)
 	const Matrix3Xd expected = (scale * rotation * result.positions).colwise() + shift;
 	EXPECT_LT((other.positions - expected).colwise().norm().maxCoeff(), 1e-6);
 	EXPECT_LT((other.normals - rotation * result.normals).colwise().norm().maxCoeff(), 1e-4);
-	EXPECT_NEAR(other.noise, scale * result.noise, 1e-9);
+	EXPECT_NEAR(other.pointDeviation, scale * result.pointDeviation, 1e-9);
 }
 
 TEST(RobustDenoising, ReportsAndCanBeCancelled)

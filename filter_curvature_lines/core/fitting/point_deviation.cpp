@@ -1,6 +1,6 @@
 // Estimates at a sample of the points, spread over all.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "local_noise.h"
+#include "point_deviation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ constexpr Quantile quartile = {0.25, 0.6744898}, tenth = {0.1, 1.2815516};
 // Noise varies over a cloud. The lower quantile of many patches belongs to those off the edges; chi-squared
 // quantile by Wilson and Hilferty.
 std::vector<double>
-localNoise(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
+pointDeviation(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
 {
 	if (blend.center.empty())
 		return std::vector<double>(cloud.size(), minNoise);

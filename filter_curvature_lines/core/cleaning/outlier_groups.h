@@ -12,7 +12,7 @@ namespace curvature_lines {
 void restoreGroups(
 	const VoterCloud&           cloud,
 	const std::vector<Verdict>& verdicts,
-	double                      noise, // where a verdict has none
+	double                      heightDeviation, // where a verdict has no heightError
 	double                      sensitivity,
 	std::vector<char>&          rejected,
 	const Progress&             progress = {});

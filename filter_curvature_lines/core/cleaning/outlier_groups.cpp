@@ -1,6 +1,6 @@
 // Groups of rejected points, and surfaces continued into them pass by pass.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "outlier_appeal.h"
+#include "outlier_groups.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,16 +20,16 @@ constexpr double oneSurface     = 1.5;  // noise units of deviation
 constexpr double acceptedShare = 0.25;
 constexpr int    mostPasses    = 30;
 
-class Appeal {
+class GroupRestoration {
 public:
-	Appeal(
+	GroupRestoration(
 		const VoterCloud&           cloud,
 		const std::vector<Verdict>& verdicts,
-		double                      noise,
+		double                      heightDeviation,
 		double                      sensitivity,
 		std::vector<char>&          rejected) :
-			m_cloud(cloud), m_verdicts(verdicts), m_noise(noise), m_sensitivity(sensitivity),
-			m_rejected(rejected)
+			m_cloud(cloud), m_verdicts(verdicts), m_heightDeviation(heightDeviation),
+			m_sensitivity(sensitivity), m_rejected(rejected)
 	{
 	}
 
@@ -37,16 +37,16 @@ public:
 
 private:
 	void findGroups();
-	bool belongs(const VoterCloud& heard, Index i) const;
+	bool belongs(const VoterCloud& candidates, Index i) const;
 
 	const VoterCloud&           m_cloud;
 	const std::vector<Verdict>& m_verdicts;
-	double                      m_noise, m_sensitivity;
+	double                      m_heightDeviation, m_sensitivity;
 	std::vector<char>&          m_rejected;
 	std::vector<Index>          m_grouped; // rejected points of large groups
 };
 
-void Appeal::findGroups()
+void GroupRestoration::findGroups()
 {
 	const Index        n = static_cast<Index>(m_rejected.size());
 	std::vector<char>  seen(n, 0);
@@ -76,17 +76,18 @@ void Appeal::findGroups()
 	std::sort(m_grouped.begin(), m_grouped.end());
 }
 
-bool Appeal::belongs(const VoterCloud& heard, Index i) const
+bool GroupRestoration::belongs(const VoterCloud& candidates, Index i) const
 {
 	thread_local OutlierVoter voter;
 	voter           = OutlierVoter();
 	voter.centre    = i;
 	voter.neighbors = smallVoter;
-	fitVoter(voter, heard);
+	fitVoter(voter, candidates);
 	if (!voter.surface.valid)
 		return false;
-	voter.noise = m_verdicts[i].noise > 0.0 ? m_verdicts[i].noise : m_noise;
-	if (voter.deviation() > oneSurface * voter.noise)
+	voter.heightDeviation =
+		m_verdicts[i].heightError > 0.0 ? m_verdicts[i].heightError : m_heightDeviation;
+	if (voter.deviation() > oneSurface * voter.heightDeviation)
 		return false;
 	const double reach    = m_sensitivity * voter.heightError();
 	const auto   residual = [&](Index j) {
@@ -103,20 +104,20 @@ bool Appeal::belongs(const VoterCloud& heard, Index i) const
 	return accepted >= acceptedShare * on;
 }
 
-void Appeal::run(const Progress& progress)
+void GroupRestoration::run(const Progress& progress)
 {
 	findGroups();
 	if (m_grouped.empty())
 		return;
 	// Voters see the accepted points and the groups, whatever is taken back.
-	std::vector<char> heard(m_rejected.size());
-	for (std::size_t i = 0; i < heard.size(); ++i)
-		heard[i] = !m_rejected[i];
+	std::vector<char> candidate(m_rejected.size());
+	for (std::size_t i = 0; i < candidate.size(); ++i)
+		candidate[i] = !m_rejected[i];
 	for (const Index i : m_grouped)
-		heard[i] = 1;
+		candidate[i] = 1;
 	std::vector<Index> active;
-	for (std::size_t i = 0; i < heard.size(); ++i)
-		if (heard[i])
+	for (std::size_t i = 0; i < candidate.size(); ++i)
+		if (candidate[i])
 			active.push_back(static_cast<Index>(i));
 	const Eigen::Matrix3Xd positions = columnsOf(m_cloud.positions, active);
 	const NeighborSearch   search(positions);
@@ -144,12 +145,12 @@ void Appeal::run(const Progress& progress)
 void restoreGroups(
 	const VoterCloud&           cloud,
 	const std::vector<Verdict>& verdicts,
-	double                      noise,
+	double                      heightDeviation,
 	double                      sensitivity,
 	std::vector<char>&          rejected,
 	const Progress&             progress)
 {
-	Appeal(cloud, verdicts, noise, sensitivity, rejected).run(progress);
+	GroupRestoration(cloud, verdicts, heightDeviation, sensitivity, rejected).run(progress);
 }
 
 } // namespace curvature_lines

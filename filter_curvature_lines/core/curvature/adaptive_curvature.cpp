@@ -53,7 +53,7 @@ public:
 					scale.height.radius,
 					Degrees::only(scale.height.degree),
 					AnchorDetail::Full,
-					Zone{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
+					Vicinity{&m_userSearch, 1.05 * scale.radius() + 2.5 * scale.height.radius}),
 				m_subsets,
 				scale,
 				quadricResidual),
@@ -66,7 +66,7 @@ public:
 		if (scale.normalRadius == 0.0)
 			return;
 		parallelFor(m_anchors.size(), {}, [&](Index a) {
-			if (Zone{&m_userSearch, blendRadius * m_scale.height.radius}.contains(
+			if (Vicinity{&m_userSearch, blendRadius * m_scale.height.radius}.contains(
 					m_anchors.origins().col(a)))
 				if (m_elements[a].valid)
 					m_elements[a] = m_anchors.normalField(m_anchors.elements()[a]);

@@ -87,7 +87,7 @@ SurfaceElement surfaceAt(
 	    .of(scale.degree);
 }
 
-bool Zone::contains(const Eigen::Vector3d& position) const
+bool Vicinity::contains(const Eigen::Vector3d& position) const
 {
 	return !points || points->anyWithin(position, reach);
 }
@@ -98,7 +98,7 @@ AnchorFits fitAnchors(
 	double              radius,
 	Degrees             degrees,
 	AnchorDetail        detail,
-	const Zone&         zone)
+	const Vicinity&     vicinity)
 {
 	const double spacing          = detail == AnchorDetail::Sketch ? sketchSpacing : anchorSpacing;
 	const std::vector<Index> kept = thin(sample, spacing * radius);
@@ -108,7 +108,7 @@ AnchorFits fitAnchors(
 	std::vector<Index> visited;
 	visited.reserve(kept.size());
 	for (const Index i : sample.search.spatialOrder())
-		if (placeOf[i] >= 0 && zone.contains(sample.cloud.positions.col(i)))
+		if (placeOf[i] >= 0 && vicinity.contains(sample.cloud.positions.col(i)))
 			visited.push_back(i);
 	AnchorFits result;
 	result.points.resize(3, visited.size());

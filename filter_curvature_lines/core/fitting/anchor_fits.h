@@ -50,7 +50,7 @@ SurfaceElement surfaceAt(
 	int                    iterations);
 
 // The points within `reach` of given ones.
-struct Zone {
+struct Vicinity {
 	const NeighborSearch* points = nullptr; // nullptr: everywhere
 	double                reach  = 0.0;
 
@@ -75,7 +75,7 @@ AnchorFits fitAnchors(
 	const PointSubsets& subsets,
 	double              radius,
 	Degrees             degrees,
-	AnchorDetail        detail = AnchorDetail::Full,
-	const Zone&         zone   = {});
+	AnchorDetail        detail   = AnchorDetail::Full,
+	const Vicinity&     vicinity = {});
 
 } // namespace curvature_lines

@@ -13,11 +13,13 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  neighborCount = 6;    // K of A09 section 4.2
-constexpr double minSine       = 0.05; // thinner triangles have no stable normal
-// points, below which waking threads costs more than they save
-constexpr Index  minParallel   = 8192;
-constexpr double minCrossRatio = 1e-3; // a triangle that collapses later keeps a finite gradient
+constexpr Index  neighborCount = 6; // K of A09 section 4.2
+constexpr double minSine = 0.05; // triangles of a smaller angle have no stable normal; not in A09
+// Points below which waking threads costs more than they save.
+constexpr Index minParallel = 8192;
+// Least double area of a triangle over the mean squared distance of the neighbours: one that collapses during the
+// minimisation keeps a finite gradient.
+constexpr double minCrossRatio = 1e-3;
 
 NeighborLists
 nearestNeighbors(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)

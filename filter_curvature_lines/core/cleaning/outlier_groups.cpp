@@ -11,14 +11,19 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  smallVoter     = 30;         // points
-constexpr Index  fewestInGroup  = smallVoter; // smaller ones would have the majority of it
-constexpr double linkLength     = 2.0;        // spacings
-constexpr double spacingOfCrowd = 0.72; // over the distance to the 6th neighbour, of even points
-constexpr double oneSurface     = 1.5;  // noise units of deviation
-// of the points of a voter, of those that join the group to the rest
-constexpr double acceptedShare = 0.25;
-constexpr int    mostPasses    = 30;
+// By experiment: clean bunny and cow, a sheet with grooves, and clusters beside a torus, which must stay rejected
+// (benchmarks/cleaning.py). Groups of 2 and of 20 lost clusters.
+constexpr Index smallVoter = 30; // points of the patches that judge groups
+constexpr Index fewestInGroup =
+	smallVoter;                    // smaller groups would have the majority of such a patch
+constexpr double linkLength = 2.0; // spacings: rejected points so near are of one group
+constexpr double spacingOfCrowd =
+	0.72; // spacing over the distance to the 6th neighbour, of evenly spread points
+constexpr double oneSurface =
+	1.5; // deviation over heightDeviation up to which a patch is one surface
+constexpr double acceptedShare =
+	0.25;                      // of the points on the patch, those that join the group to the rest
+constexpr int mostPasses = 30; // each takes back points within a patch of the last
 
 class GroupRestoration {
 public:
@@ -109,7 +114,7 @@ void GroupRestoration::run(const Progress& progress)
 	findGroups();
 	if (m_grouped.empty())
 		return;
-	// Voters see the accepted points and the groups, whatever is taken back.
+	// Patches are fitted to the accepted points and all groups, in every pass the same.
 	std::vector<char> candidate(m_rejected.size());
 	for (std::size_t i = 0; i < candidate.size(); ++i)
 		candidate[i] = !m_rejected[i];

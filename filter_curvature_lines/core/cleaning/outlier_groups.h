@@ -1,4 +1,4 @@
-// A second hearing for rejected points that hang together: tips and ridges too narrow for the voters.
+// Rejected groups judged again by smaller voters: tips and ridges are narrower than the voters of the first vote.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -16,21 +16,27 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Of the distance to the 6th neighbour among evenly spread points, and of that around the centre.
+// Where points are denser than usual only a share of them is taken, so that neither a dense cluster nor the dense side
+// of a jump in density has the majority. Usual: the distance to the 6th neighbour is `denseness` times that of evenly
+// spread points in the ball, or `denserThanCentre` times the median of the nearCentre points next to the centre, whichever
+// is larger. By experiment; tests in outlier_rejection_test.
 constexpr double denseness        = 0.6;
 constexpr double denserThanCentre = 0.5;
 constexpr Index  nearCentre       = 9;
-constexpr double fewestKept       = 0.8; // of the points asked for, or a larger ball is searched
-constexpr double largestBall      = 4.0; // times the points asked for
-// of the spacing: what a quadric misses on an exact surface
+constexpr double fewestKept =
+	0.8; // of the points asked for; else a ball of up to largestBall times as many
+constexpr double largestBall = 4.0; // points, over those asked for
+// Least scale of a fit, in spacings: what a quadric misses on an exact surface.
 constexpr double minDeviation = 0.06;
-constexpr double onSurface    = 3.0; // deviations
-constexpr double minMajority  = 0.35;
-// squared Mahalanobis distance; 4 is the rim of a uniform disk
+constexpr double onSurface    = 3.0; // scales: points within are on the surface
+constexpr double minMajority =
+	0.35; // of the points are on the surface, or there is no vote (as in fitPatchRobustly)
+// Squared Mahalanobis distance from the points on the surface: for a uniform disk the rim is at 4, for a quarter of a
+// disk the corner at 7.4. A little more than both.
 constexpr double insideDistance2 = 4.5;
-constexpr double rimDistance2    = 9.0; // 7.4 is the corner of a quarter of a disk
-// What a robust quadric of n points takes of the deviation, times n, and the variance its prediction adds,
-// times n over that of a point: both found by fits to noisy planes.
+constexpr double rimDistance2    = 9.0;
+// A robust quadric of n points takes lostDeviation / n of the deviation, and its prediction adds predictionVariance / n
+// of a point's variance: both found by fits to planes with normally distributed noise.
 constexpr double lostDeviation      = 9.5;
 constexpr double predictionVariance = 6.0;
 

@@ -22,51 +22,71 @@ using Support = BlendOptions::Support;
 
 constexpr const char* stage = "Denoising";
 
-// Radii in local spacings, or in units of which the cloud has as many in the middle.
+// Constants without a source of their own were chosen by experiment on tori, a helicoid and cubes of 600 to 60 000
+// points with 0 to 2 % noise; benchmarks/cleaning.py judges them. Radii are in local spacings, or in units (m_unit) of
+// which the cloud has one per spacing in the middle. A ladder tries one radius after the other, each `...Step` times the
+// one before, and ends when the score exceeds the best one `...Tolerance` times.
 constexpr double smallestRadius = 2.5; // 20 points: a quadric with some to spare
+// While the noise is measured radii grow to minRadiusNoise deviations, because in thinner balls noise looks like shape;
+// by noiseStep in a round, until less than fewPoints of the points grow by more than noiseSettled.
 constexpr double noiseStep      = 1.26;
-constexpr double noiseSettled   = 1.02; // growth of a smallest radius that is not worth a step
-constexpr double minRadiusNoise = 5.0;  // a patch narrower than this many noise units is all noise
-constexpr double freeStep       = 1.4;
-constexpr double maxFreeRadius  = 15.0;
-constexpr double freeTolerance  = 1.02; // of scores over the best: the end of a ladder
-constexpr double arcStep        = 1.12;
-constexpr double arcStart       = 0.8; // of the free radius
-constexpr double maxArcRadius   = 25.0;
-constexpr double arcTolerance   = 1.01;
-// Scores as good as the same: the wider patch has less variance.
-constexpr double arcTie           = 1.001;
+constexpr double noiseSettled   = 1.02;
+constexpr double minRadiusNoise = 5.0;
+constexpr double fewPoints      = 0.1;
+// Patches over tangent planes (Support::Free).
+constexpr double freeStep      = 1.4;
+constexpr double maxFreeRadius = 15.0;
+constexpr double freeTolerance = 1.02;
+// Patches by arc length, from a little under the free radius on. Scores within the tie are the same, and of two radii
+// with the same score the wider one has less variance.
+constexpr double arcStep      = 1.12;
+constexpr double arcStart     = 0.8;
+constexpr double maxArcRadius = 25.0;
+constexpr double arcTolerance = 1.01;
+constexpr double arcTie       = 1.001;
+// Patches of one face (Support::OneFace).
 constexpr double oneFaceStep      = 1.3;
 constexpr double maxOneFaceRadius = 17.0;
 constexpr double oneFaceTolerance = 1.015;
-constexpr double minPilotRadius   = 3.2;
-constexpr double pilotNoise       = 8.0; // noise units across which an edge is told from noise
-constexpr double maxFlagRadius    = 6.3;
-constexpr double fewestPatches    = 6.0; // in a cloud, of n / radius^2 points
-constexpr double fewPoints        = 0.1; // share of the points that a ladder does not wait for
-// Bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2.
-constexpr double unitExponent = 0.2; // of noise times spacing
+// Narrow patches that tell edges from noise: this radius, or pilotNoise deviations; to find out which points are near
+// edges no more than maxFlagRadius.
+constexpr double minPilotRadius = 3.2;
+constexpr double pilotNoise     = 8.0;
+constexpr double maxFlagRadius  = 6.3;
+// The cloud is no smaller than six patches of these radii, as the sum of radius^2 is at most n^2 / 6.
+constexpr double fewestPatches = 6.0;
+// Derived: bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2, so that the best
+// radius is proportional to (noise spacing)^(1/5).
+constexpr double unitExponent = 0.2;
 
-constexpr Index  fewestPoints      = 8; // a quadric and a residual
-constexpr Index  testPoints        = 5000;
-constexpr double testOverlap       = 19.0;
-constexpr double maxResidual       = 3.0;  // noise units, in scores
-constexpr double minPurity         = 0.5;  // of a point that tells about smooth surfaces
-constexpr double edgePurity        = 0.01; // of a point beside an edge without doubt
-constexpr double fewEdges          = 0.01; // share of such points
-constexpr double minOffEdgeShare   = 0.1;
+constexpr Index  fewestPoints = 8;    // a quadric and a residual
+constexpr Index  testPoints   = 5000; // that scores are taken from
+constexpr double testOverlap =
+	19.0; // half of BlendOptions::overlap: scores need less than the result
+constexpr double maxResidual =
+	3.0; // deviations: a larger leave-one-out residual counts as this in scores
+// Scores leave out points whose patches are less pure than minPurity, if there are edges: if patches are less pure than
+// edgePurity at more than fewEdges of the points, and at least minOffEdgeShare of the points remain.
+constexpr double minPurity       = 0.5;
+constexpr double edgePurity      = 0.01;
+constexpr double fewEdges        = 0.01;
+constexpr double minOffEdgeShare = 0.1;
+// BlendOptions::purity and acceptance of the stages.
 constexpr double strictPurity      = 2.0;
 constexpr double mildPurity        = 1.0;
-constexpr double pilotAcceptance   = 2.0; // noise units
+constexpr double pilotAcceptance   = 2.0;
 constexpr double oneFaceAcceptance = 3.0;
-constexpr double sharpPurity       = 0.5;  // of smooth patches, below which edges are looked for
-constexpr double sameSide          = 1e-3; // least weight of a neighbour across an edge
-constexpr Index  gainNeighbors     = 24;
-// of a squared residual by gates: below it the gate only costs
-constexpr double smoothGain = 0.1;
-constexpr double sharpGain  = 0.3; // above it, it is an edge
+// Points whose smooth patches are less pure are denoised by patches of one face as well. The share of these in the
+// result rises from 0 to 1 as they explain more of the squared residuals than smooth ones do: from smoothGain, which
+// patches of one face lose by holding fewer points, to sharpGain, which only an edge gives. Compared at gainNeighbors
+// points around; those across an edge count next to nothing.
+constexpr double sharpPurity   = 0.5;
+constexpr double sameSide      = 1e-3;
+constexpr Index  gainNeighbors = 24;
+constexpr double smoothGain    = 0.1;
+constexpr double sharpGain     = 0.3;
 
-// Ladders end where the data say: every rung takes a share of what is left of their time.
+// The progress of step k of a ladder: nobody knows how many there are, so that each takes a share of what is left.
 Progress rung(const Progress& progress, int k)
 {
 	constexpr double left = 0.75;
@@ -222,7 +242,7 @@ void RobustDenoiser::findPointDeviation(const Progress& progress)
 	}
 }
 
-// Where points are dense or noisy patches of the same size in spacings are not equally good.
+// One radius in spacings does not suit parts of different noise or density.
 void RobustDenoiser::findUnits()
 {
 	m_unit.resize(size());
@@ -233,7 +253,7 @@ void RobustDenoiser::findUnits()
 		unit /= middle;
 }
 
-// Edges would make any wide patch look wrong, and the whole cloud would be smoothed too little.
+// Beside edges every wide patch leaves large residuals. Scores with them would favour small radii everywhere.
 void RobustDenoiser::findPointsOffEdges(const Progress& progress)
 {
 	BlendOptions options;
@@ -254,7 +274,7 @@ void RobustDenoiser::findPointsOffEdges(const Progress& progress)
 			offEdges.push_back(i);
 		clear += blend.purity[i] < edgePurity;
 	}
-	// To leave out the points that are noisy by chance would favour the radius they were told at.
+	// Without edges impure points are those with large errors by chance; to leave them out would favour this radius.
 	const double share = 1.0 / double(m_test.size());
 	if (share * clear > fewEdges && share * double(offEdges.size()) > minOffEdgeShare)
 		m_offEdges = std::move(offEdges);
@@ -337,8 +357,8 @@ std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
 	return result;
 }
 
-// A point beside an edge is explained by the pure patches of its own face. Elsewhere the smooth
-// surface is the best there is.
+// Positions and normals as a guide for patches of one face: at the targets from narrow pure patches, elsewhere from the
+// smooth surface.
 PatchBlend RobustDenoiser::edgePilot(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
@@ -447,7 +467,7 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 	}
 }
 
-// It is an outlier, or was taken for one of another face.
+// Such a point is an outlier, or was assigned to the wrong face.
 void RobustDenoiser::undoFarMoves(PatchBlend& blend) const
 {
 	for (Index i = 0; i < size(); ++i)

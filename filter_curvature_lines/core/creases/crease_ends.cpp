@@ -11,9 +11,12 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Length over which points may be missing at the end of a crease, where two faces are hard to tell apart: so many
+// spacings plus so many faceDeviations. By experiment (benchmarks/creases.py).
 constexpr double reachSpacings   = 4.0;
 constexpr double reachDeviations = 4.0;
-constexpr double straightOn      = 0.85; // cosine: two ends that continue each other
+constexpr double straightOn =
+	0.85; // cosine, 32 degrees: tangents and normals of ends that continue each other
 
 double lengthOf(const CreaseTrace& trace)
 {

@@ -6,8 +6,9 @@
 
 namespace curvature_lines {
 
-constexpr double spacingsBehind = 3.0; // that a trace may go beyond where it ends
-constexpr double shortestLoop   = 8.0; // spacings
+// By experiment (benchmarks/creases.py); in spacings.
+constexpr double spacingsBehind = 3.0; // that a trace may run on beyond the corner it ends in
+constexpr double shortestLoop   = 8.0; // a shorter closed curve is none
 
 // One end of a trace, the tangent outward.
 struct CreaseEnd {

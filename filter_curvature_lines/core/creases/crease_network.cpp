@@ -17,10 +17,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double parallel  = 0.9; // cosine
+// By experiment (benchmarks/creases.py).
+constexpr double parallel =
+	0.9; // cosine, 26 degrees: a crease that runs alongside makes no junction
 constexpr double minLength = 5.0; // spacings; a shorter curve needs corners at both ends
 constexpr int    maxRounds = 20;  // each drops a stub; three or so are usual
-// of a corner to the ends of its curves, if the faces leave it free
+// Weight of the ends of the curves against the planes of their faces, which place a corner: decides only along
+// directions that the faces leave free.
 constexpr double pull = 1e-3;
 
 // The point nearest to all faces of the vertices.

@@ -15,14 +15,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double window          = 3.0; // local spacings along the curve
+// By experiment, as those of crease_points.cpp (benchmarks/creases.py).
+constexpr double window =
+	3.0; // local spacings along the curve to each side, in which the curve is a parabola
+// Distance from the curve, in spacings or faceDeviations, beyond which points are of another crease.
 constexpr double widthSpacings   = 1.5;
 constexpr double widthDeviations = 2.5;
-constexpr double sameTangent     = 0.7; // cosines
-constexpr double sameNormal      = 0.75;
-constexpr int    minSupport      = 3; // points within one spacing along the curve
-constexpr double tracedShare     = 0.6;
-constexpr double robustScale     = 2.5;
+// Cosines between tangents (46 degrees) and between the normals of a face (41 degrees) along one crease.
+constexpr double sameTangent = 0.7;
+constexpr double sameNormal  = 0.75;
+constexpr int    minSupport  = 3;   // points within one spacing along the curve, from both faces
+constexpr double tracedShare = 0.6; // of the points at a place: the crease there was traced before
+constexpr double robustScale = 2.5; // median distances in the scale of the Geman-McClure weights
 
 struct PolynomialAtZero {
 	Eigen::Vector2d value = Eigen::Vector2d::Zero(), slope = Eigen::Vector2d::Zero();

@@ -16,16 +16,20 @@ namespace {
 
 constexpr const char* progressLabel = "Finding creases";
 
-constexpr double followShare     = 0.6; // of the smallest angle
-constexpr double autoSpacing     = 0.7; // median point spacings
-constexpr double finest          = 0.05;
+// By experiment (benchmarks/creases.py).
+constexpr double followShare =
+	0.6; // of the smallest angle: how far a crease is followed as it fades
+constexpr double autoSpacing = 0.7;  // median point spacings: of steps, and of vertices by default
+constexpr double finest      = 0.05; // median point spacings: least distance of vertices
+// The shape operator at a point comes from those of so many neighbours whose normals differ from what the round before
+// predicts by less than a length: 29 degrees in the first round, halved down to 14 degrees.
 constexpr Index  shapeNeighbors  = 28;
 constexpr int    shapeIterations = 3;
-constexpr double firstDifference = 0.5; // differences of normals
+constexpr double firstDifference = 0.5;
 constexpr double lastDifference  = 0.25;
 
-// The points in an order of their own, with the shape operator their normals tell: of those around that vary
-// linearly with the place, as they do on one side of a crease.
+// The points with their shape operators, fitted to the normals around that vary linearly with the place, as they do on
+// one side of a crease.
 std::vector<SurfaceElement>
 elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress& progress)
 {

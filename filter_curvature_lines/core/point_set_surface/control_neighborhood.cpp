@@ -11,13 +11,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double isolated = 3.0; // spacings
-// Points in a ball of one spacing on an even grid. Noise and uneven clouds may put more into it, or very few of
-// the sheet.
+// Spacings from the closest control point beyond which there is no surface. T06 leaves the support open.
+constexpr double isolated = 3.0;
+// Control points kept: as many as a ball of the same radius holds on an even grid, pi and a little more per squared
+// spacing. Noise and uneven clouds may put more into it. With less than this share of them on the sheet the search is for
+// neighbours by number instead.
 constexpr double gridPoints = 3.6;
-constexpr double fewest     = 0.4; // of that
-constexpr double farAway    = 1e30;
-// cosine: faces at a right angle are one sheet, those of a thin plate two
+constexpr double fewest     = 0.4;
+constexpr double farAway = 1e30; // coordinate of the points that fill up a block: their weight is 0
+// Cosine between normals below which points are on another sheet, 110 degrees: faces at a right angle are one sheet,
+// those of a thin plate are two.
 constexpr double opposing = -0.34;
 
 // Offsets of four points from a place, and their Gaussian weights.

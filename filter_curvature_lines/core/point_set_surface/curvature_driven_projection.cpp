@@ -16,9 +16,12 @@ namespace {
 using Eigen::Vector3d;
 using Diffusion = CurvatureDrivenOptions::Diffusion;
 
-constexpr double gaussianReach  = 2.0;  // bandwidths: beyond, weights are below a fiftieth
-constexpr double curvatureReach = 1.6;  // bandwidths: M weights are largest at the root of xi
-constexpr double settled        = 1e-3; // spacings: what diffusion moves at last
+// How far points are looked at. exp(-x^2 / h^2) is below a fiftieth beyond two bandwidths; M weights are largest at
+// h sqrt(xi), 1.4 bandwidths for xi = 2.
+constexpr double gaussianReach  = 2.0;
+constexpr double curvatureReach = 1.6;
+constexpr double settled =
+	1e-3; // spacings: diffusion ends when a step moves less (T06: a number of steps)
 
 } // namespace
 

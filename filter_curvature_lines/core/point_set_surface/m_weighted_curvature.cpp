@@ -11,9 +11,9 @@ namespace curvature_lines {
 
 namespace {
 
-// Points whose w is below this share of its peak do not count (T06 section 6, value unpublished).
+// Points whose w is below this share of its peak do not count. T06 section 6 has such a threshold without its value.
 constexpr double smallestShare    = 1e-3;
-constexpr double fewestDirections = 4.0; // one more than unknowns
+constexpr double fewestDirections = 4.0; // points: one more than unknowns
 
 // Of rows (1, cos 2 phi, sin 2 phi).
 struct EulerSums {

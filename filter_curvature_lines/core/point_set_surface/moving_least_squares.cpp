@@ -10,8 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double gaussianReach = 2.0;  // bandwidths: beyond, weights are below a fiftieth
-constexpr double settled       = 1e-3; // spacings: what the plane moves at last
+// As in curvature_driven_projection.cpp, so that the two surfaces can be compared (benchmarks/ray_tracing.py).
+constexpr double gaussianReach = 2.0;  // bandwidths
+constexpr double settled       = 1e-3; // spacings: the plane is found when a step moves less
 
 } // namespace
 

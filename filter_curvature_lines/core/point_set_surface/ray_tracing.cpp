@@ -28,25 +28,33 @@ struct RayTracer::Passage {
 
 namespace {
 
-constexpr Index sphereNeighbor = 6; // as far as that from its point a sphere reaches
-// Spacings a sphere reaches at least: uneven points leave no gaps between their spheres (68 pixels of the dragon
-// without). Half as far again leaves as few wrong ones, 7 instead of 8, and takes 1.3 to 1.5 times as long.
-constexpr double leastSphere   = 1.3;
-constexpr double largestSphere = 3.0;  // likewise: lonely points enclose no surface
-constexpr double steepest      = 0.05; // sine of a ray's angle to a plane worth meeting
-// spacings: most places are that close to the point of their sphere
-constexpr double margin  = 0.5;
-constexpr double strayed = 1.8; // radii: a loop so far from its sphere's centre is given up
-// cosine between the normals of a hit and of its sphere's point
-constexpr double turned = 0.97;
-constexpr double behind = 5.0; // radii: a back so close to a front is an artefact
-// Of the march, in spacings: its shortest step; how much farther than the closest control point others still
-// count; how far from the surface the closest alone tells enough.
+// Adamson and Alexa 2003 leave the radii of the spheres open. A sphere reaches to this neighbour of its point, but within
+// these bounds in spacings. With less than 1.3 rays passed between the spheres of uneven points (68 pixels of the dragon);
+// radii one and a half times as large leave as few wrong pixels, 7 instead of 8, and take 1.3 to 1.5 times as long
+// (benchmarks/ray_tracing.py). Lonely points enclose no surface.
+constexpr Index  sphereNeighbor = 6;
+constexpr double leastSphere    = 1.3;
+constexpr double largestSphere  = 3.0;
+// Where a ray is expected to meet the surface: the plane of a sphere's point, unless the sine of their angle is less.
+constexpr double steepest = 0.05;
+// Spacings around a control point in which its neighbourhood serves all rays: most of them meet the surface there.
+constexpr double margin = 0.5;
+// When the fixed-point loop of approach() is not trusted, by experiment: radii from the sphere's centre beyond which it
+// is given up; cosine between the normals of a hit and of the sphere's point, 14 degrees; radii between a front and a
+// back side that is met behind it.
+constexpr double strayed = 1.8;
+constexpr double turned  = 0.97;
+constexpr double behind  = 5.0;
+// Of march(), in spacings, by experiment: its shortest step; how much farther than the closest control point others are
+// blended in; the height above which the closest point alone tells enough.
 constexpr double shortest = 0.35, blend = 0.5, far = 0.4;
-// radii: so far out of the spheres too, which leave gaps where points are uneven
-constexpr double beyond  = 0.5;
-constexpr double outline = 1e-3;      // cosine of the angle between a normal and a ray there
-constexpr int    tile = 16, beam = 4; // pixels: whose rays share neighbourhoods, and spheres
+// Radii by which march() looks beyond the spheres, because they leave gaps where points are uneven.
+constexpr double beyond = 0.5;
+constexpr double outline =
+	1e-3; // least cosine between the normal of a hit and the ray, so that it faces the eye
+// Pixels of a square whose rays share neighbourhoods, and of one whose rays share the search for spheres. Change no
+// result, only the time.
+constexpr int tile = 16, beam = 4;
 
 struct Sphere {
 	Vector3d center, normal;
@@ -206,7 +214,7 @@ const RayTracer::Memory::Slot& RayTracer::surfaceAt(Index point, Memory& memory)
 	return slot;
 }
 
-// Nothing unless the surface is met surely: on the side of the sphere's point, away from other sheets.
+// A hit only if it is certain: on the side of the sphere's point, and without other sheets around.
 RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memory) const
 {
 	const Sphere&       sphere = m_spheres->all[passage.sphere];
@@ -230,7 +238,7 @@ RayHit RayTracer::approach(const Ray& ray, const Passage& passage, Memory& memor
 		lastStep            = step;
 		t += lastMove;
 		place = ray.origin + t * ray.direction;
-		// A quadric that the ray misses tells little at a distance: a nearer one has to confirm it.
+		// Where the ray misses a quadric it goes to the closest approach; the quadric there has to be met.
 		if (!(found || before) || (place - sphere.center).norm() > strayed * sphere.radius ||
 		    !(t > 0.0))
 			return {};
@@ -346,8 +354,8 @@ RayHit RayTracer::bracketed(
 	return {t, ray.origin + t * ray.direction, normal};
 }
 
-// From place to place through the spheres until the ray crosses the surface: slower than approach(), and sure
-// where the ray grazes the surface and where sheets are close to each other.
+// Steps along the ray through the spheres until the height over the surface changes its sign: slower than approach(), and
+// reliable where the ray grazes the surface and where sheets are close to each other.
 RayHit RayTracer::march(
 	const Ray& ray, double end, const std::vector<Passage>& passages, Memory& memory) const
 {
@@ -379,8 +387,8 @@ RayHit RayTracer::march(
 	return {};
 }
 
-// At thin rims a ray may slip past the rounded front and meet the back, from inside: whether there is a front
-// about that the ray should have met.
+// At thin rims a ray may pass the rounded front and meet the back side from within. Whether there is a front nearby that
+// the ray should have met.
 bool RayTracer::besideFront(
 	const Ray& ray, double depth, const std::vector<Passage>& passages) const
 {
@@ -459,7 +467,7 @@ RayHit RayTracer::trace(const Ray& ray, Memory& memory) const
 				chosen = k;
 		RayHit hit = approach(ray, passages[chosen], memory);
 		if (hit.exists() && !passages[chosen].encloses(hit.depth)) {
-			// Another sphere knows the surface there better.
+			// Outside of its sphere a hit is found again from the sphere around it.
 			Passage closest = closestTo(hit.depth, passages);
 			closest.start   = hit.depth;
 			hit             = approach(ray, closest, memory);

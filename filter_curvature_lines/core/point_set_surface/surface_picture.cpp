@@ -15,12 +15,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  colorNeighbors = 8;
+// Appearance of the pictures, chosen by eye.
+constexpr Index  colorNeighbors = 8; // control points whose colours are blended
 constexpr double ambient        = 0.3;
-constexpr double glossShare = 0.12, glossPower = 40.0;
-constexpr double outlineTurn  = 0.8; // cosine between normals of neighbouring pixels
-constexpr double outlineJump  = 4.0; // spacings of depth, where the surface faces the eye
-constexpr double aboveSurface = 1.5; // spacings: lines so far behind are still drawn
+constexpr double glossShare = 0.12, glossPower = 40.0; // Blinn's highlight
+// Neighbouring pixels are on different sides of an outline when the cosine of their normals is less, or their depths
+// differ by more spacings.
+constexpr double outlineTurn = 0.8;
+constexpr double outlineJump = 4.0;
+// Lines are drawn when they lie no more than this many spacings behind the surface, so that the error of their projection
+// does not hide them.
+constexpr double aboveSurface = 1.5;
 
 class Shader {
 public:

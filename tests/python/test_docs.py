@@ -70,3 +70,13 @@ def test_the_map_for_contributors_shows_rooms_and_units_as_they_are():
         headers = {file.stem for file in (CHECKOUT / "filter_curvature_lines/core" / name).glob("*.h")}
         assert headers
         assert set(re.findall(r"`(\w+)`", units)) == headers, name
+
+
+def test_the_method_names_units_that_exist():
+    page = (CHECKOUT / "docs/method.md").read_text()
+    core = CHECKOUT / "filter_curvature_lines/core"
+    rooms = "|".join(folder.name for folder in core.iterdir() if folder.is_dir())
+    named = set(re.findall(rf"`((?:{rooms})/[a-z_]+)`", page))
+    assert len(named) > 50
+    missing = [unit for unit in sorted(named) if not list(core.glob(f"{unit}.*"))]
+    assert not missing

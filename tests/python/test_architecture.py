@@ -42,6 +42,7 @@ PARTS_OF_A_STAGE = {
     "lines/line_arrangement": "lines/quad_mesh",
     "lines/line_spacing": "lines/line_tracing",
     "lines/surface_flow": "lines/line_tracing",
+    "mesh/graph_builder": "lines/quad_mesh",
     "mesh/polygons": "lines/quad_mesh",
     "mesh/rim_cleanup": "mesh/quad_cleanup",
     "point_set_surface/control_neighborhood": "point_set_surface/curvature_driven_projection",
@@ -50,6 +51,7 @@ PARTS_OF_A_STAGE = {
     "position_field/feature_alignment": "position_field/position_field_mesh",
     "position_field/position_field_lines": "position_field/position_field_mesh",
     "position_field/rims": "position_field/rim_fit",
+    "position_field/surface_graph": "position_field/surface_arrangement",
 }
 # Units that only a whole filter shows at work, with the test of the filter in this folder.
 TESTED_FROM_PYTHON = {"point_set_surface/surface_picture": "test_filters_point_set_surfaces"}

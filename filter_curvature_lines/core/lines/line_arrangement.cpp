@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "disjoint_sets.h"
 #include "face_loops.h"
+#include "graph_builder.h"
 
 namespace curvature_lines {
 
@@ -27,9 +28,8 @@ constexpr double LargestRepair = 1.0;
 class Arranger {
 public:
 	Arranger(const VoronoiCells& cells, const LineNetwork& lines, const LineIntersections& found) :
-			m_lines(lines), m_found(found), m_cluster(found.crossings.size())
+			m_lines(lines), m_found(found), m_clusters(static_cast<Index>(found.crossings.size()))
 	{
-		std::iota(m_cluster.begin(), m_cluster.end(), 0);
 		Index site = 0;
 		for (const LineCrossing& crossing : found.crossings) {
 			site = cells.locate(crossing.position, site);
@@ -63,17 +63,16 @@ public:
 			for (const Index v : {p.from, p.to})
 				reach[v] = std::min(reach[v], (p.middle - m_positions.col(v)).norm());
 
-		std::vector<HalfEdgeGraph::Edge> edges;
+		GraphBuilder builder;
+		for (Index v = 0; v < m_positions.cols(); ++v)
+			builder.addVertex(m_positions.col(v), m_normals.col(v));
 		for (const Piece& p : pieces) {
-			edges.push_back(
-				{p.from,
-			     p.to,
-			     tangentAt(p.from, reach[p.from], p.line, p.entryFrom, p.half, 1.0),
-			     tangentAt(p.to, reach[p.to], p.line, p.entryTo, p.half - p.wrap, -1.0),
-			     p.middle,
-			     (m_normals.col(p.from) + m_normals.col(p.to)).normalized()});
+			HalfEdgeGraph::Edge& edge = builder.edgeOf(builder.addEdge(p.from, p.to));
+			edge.tangentFrom = tangentAt(p.from, reach[p.from], p.line, p.entryFrom, p.half, 1.0);
+			edge.tangentTo = tangentAt(p.to, reach[p.to], p.line, p.entryTo, p.half - p.wrap, -1.0);
+			edge.middle    = p.middle;
 		}
-		return HalfEdgeGraph(m_positions, m_normals, std::move(edges));
+		return builder.graph();
 	}
 
 	// Joins the ends of edges of tangled loops that are shorter than `distance` spacings.
@@ -93,38 +92,27 @@ public:
 
 	Index merged() const
 	{
-		return static_cast<Index>(m_cluster.size()) - static_cast<Index>(m_first.size());
+		return static_cast<Index>(m_vertexOf.size()) - static_cast<Index>(m_first.size());
 	}
 
 private:
-	Index clusterOf(Index crossing) const
-	{
-		while (m_cluster[crossing] != crossing)
-			crossing = m_cluster[crossing];
-		return crossing;
-	}
-
 	bool joinIfNear(Index a, Index b, double apart, double distance)
 	{
-		const Index i = clusterOf(a), j = clusterOf(b);
-		if (i == j || apart >= distance * m_spacing[a])
-			return false;
-		m_cluster[std::max(i, j)] = std::min(i, j);
-		return true;
+		return apart < distance * m_spacing[a] && m_clusters.join(a, b);
 	}
 
 	void placeVertices()
 	{
-		const Index crossings = static_cast<Index>(m_cluster.size());
+		const Index crossings = static_cast<Index>(m_found.crossings.size());
 		m_vertexOf.assign(crossings, -1);
 		m_first.clear();
 		std::vector<Index> members;
 		for (Index c = 0; c < crossings; ++c) {
-			if (clusterOf(c) == c) {
+			if (m_clusters.find(c) == c) {
 				m_vertexOf[c] = static_cast<Index>(m_first.size());
 				m_first.push_back(c);
 			}
-			m_vertexOf[c] = m_vertexOf[clusterOf(c)];
+			m_vertexOf[c] = m_vertexOf[m_clusters.find(c)];
 		}
 		const Index vertices = static_cast<Index>(m_first.size());
 		m_positions.setZero(3, vertices);
@@ -202,7 +190,7 @@ private:
 	const LineNetwork&       m_lines;
 	const LineIntersections& m_found;
 	std::vector<double>      m_spacing;  // at every crossing
-	std::vector<Index>       m_cluster;  // an earlier crossing of the same cluster, or itself
+	DisjointSets             m_clusters; // of crossings that are one vertex
 	std::vector<Index>       m_vertexOf; // of every crossing
 	std::vector<Index>       m_first;    // crossing of every vertex
 	std::vector<double>      m_radius;   // of every vertex's cluster

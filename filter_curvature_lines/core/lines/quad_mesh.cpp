@@ -23,20 +23,15 @@ constexpr Index Crumb = 4; // faces
 
 Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadMeshResult& result)
 {
-	Polygons polygons(graph);
-	for (const std::vector<Index>& loop : graph.faceLoops()) {
+	std::vector<std::vector<Index>> faces;
+	for (std::vector<Index>& loop : graph.faceLoops()) {
 		const LoopKind kind = kindOf(loop);
-		if (kind != LoopKind::Face) {
-			++result.discardedLoops;
-			result.tangledLoops += kind == LoopKind::Tangled;
-			continue;
-		}
-		Face face;
-		for (Index h : loop)
-			face.push_back(graph.origin(h));
-		polygons.addDisk(face);
+		result.discardedLoops += kind != LoopKind::Face;
+		result.tangledLoops += kind == LoopKind::Tangled;
+		if (kind == LoopKind::Face)
+			faces.push_back(std::move(loop));
 	}
-	return polygons;
+	return Polygons(graph, faces);
 }
 
 bool isInside(const Vector3d& point, const Face& face, const Polygons& polygons)
@@ -143,15 +138,12 @@ PolygonMesh separateFans(const Polygons& polygons)
 			faces[corners[begin + k].face][corners[begin + k].place] = fan[k];
 	}
 
-	PolygonMesh mesh;
-	mesh.vertices.resize(3, source.size());
-	mesh.normals.resize(3, source.size());
-	for (std::size_t v = 0; v < source.size(); ++v) {
-		mesh.vertices.col(v) = polygons.vertices[source[v]];
-		mesh.normals.col(v)  = polygons.normals[source[v]];
+	std::vector<Vector3d> vertices, normals;
+	for (const Index v : source) {
+		vertices.push_back(polygons.vertices[v]);
+		normals.push_back(polygons.normals[v]);
 	}
-	mesh.faces = NeighborLists::fromRows(faces);
-	return mesh;
+	return polygonMesh(vertices, normals, faces);
 }
 
 } // namespace

@@ -46,6 +46,30 @@ std::vector<Index> nextCorners(const NeighborLists& faces)
 
 } // namespace
 
+Eigen::Matrix3Xd asColumns(const std::vector<Eigen::Vector3d>& vectors)
+{
+	Eigen::Matrix3Xd columns(3, vectors.size());
+	for (std::size_t k = 0; k < vectors.size(); ++k)
+		columns.col(k) = vectors[k];
+	return columns;
+}
+
+PolygonMesh polygonMesh(
+	const std::vector<Eigen::Vector3d>&    vertices,
+	const std::vector<Eigen::Vector3d>&    normals,
+	const std::vector<std::vector<Index>>& faces)
+{
+	return {asColumns(vertices), asColumns(normals), NeighborLists::fromRows(faces)};
+}
+
+std::vector<std::vector<Index>> faceLoopsOf(const PolygonMesh& mesh)
+{
+	std::vector<std::vector<Index>> faces;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		faces.emplace_back(mesh.faces[f].begin(), mesh.faces[f].end());
+	return faces;
+}
+
 MeshTopology topologyOf(const PolygonMesh& mesh)
 {
 	MeshTopology result;

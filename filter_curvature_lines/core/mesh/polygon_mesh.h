@@ -16,6 +16,16 @@ struct PolygonMesh {
 	Index faceCount() const { return faces.size(); }
 };
 
+Eigen::Matrix3Xd asColumns(const std::vector<Eigen::Vector3d>& vectors);
+
+PolygonMesh polygonMesh(
+	const std::vector<Eigen::Vector3d>&    vertices,
+	const std::vector<Eigen::Vector3d>&    normals,
+	const std::vector<std::vector<Index>>& faces);
+
+// The vertex loop of every face, to be changed.
+std::vector<std::vector<Index>> faceLoopsOf(const PolygonMesh& mesh);
+
 // What a mesh is, counted; nothing is assumed.
 struct MeshTopology {
 	Index vertices = 0, edges = 0, faces = 0, triangles = 0, quads = 0, largestFace = 0;

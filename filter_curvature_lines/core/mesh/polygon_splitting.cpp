@@ -132,12 +132,10 @@ PolygonSplitter::PolygonSplitter(const PolygonMesh& mesh)
 		m_vertices.push_back(mesh.vertices.col(v));
 		m_normals.push_back(mesh.normals.col(v));
 	}
-	for (Index f = 0; f < mesh.faceCount(); ++f) {
-		m_faces.emplace_back(mesh.faces[f].begin(), mesh.faces[f].end());
-		const Face& face = m_faces.back();
+	m_faces = faceLoopsOf(mesh);
+	for (const Face& face : m_faces)
 		for (std::size_t k = 0; k < face.size(); ++k)
 			m_edges.insert(key(face[k], face[(k + 1) % face.size()]));
-	}
 }
 
 std::uint64_t PolygonSplitter::key(Index a, Index b)
@@ -289,15 +287,7 @@ void PolygonSplitter::pairWithPentagons()
 
 PolygonMesh PolygonSplitter::mesh() const
 {
-	PolygonMesh result;
-	result.vertices.resize(3, m_vertices.size());
-	result.normals.resize(3, m_vertices.size());
-	for (std::size_t v = 0; v < m_vertices.size(); ++v) {
-		result.vertices.col(v) = m_vertices[v];
-		result.normals.col(v)  = m_normals[v];
-	}
-	result.faces = NeighborLists::fromRows(m_faces);
-	return result;
+	return polygonMesh(m_vertices, m_normals, m_faces);
 }
 
 } // namespace curvature_lines

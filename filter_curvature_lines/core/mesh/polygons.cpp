@@ -12,11 +12,17 @@ constexpr double collarWidth = 0.3; // of the way to the centre
 
 }
 
-Polygons::Polygons(const HalfEdgeGraph& graph)
+Polygons::Polygons(const HalfEdgeGraph& graph, const std::vector<std::vector<Index>>& faceLoops)
 {
 	for (Index v = 0; v < graph.vertexCount(); ++v) {
 		vertices.push_back(graph.positions().col(v));
 		normals.push_back(graph.normals().col(v));
+	}
+	for (const std::vector<Index>& loop : faceLoops) {
+		std::vector<Index> border;
+		for (const Index h : loop)
+			border.push_back(graph.origin(h));
+		addDisk(border);
 	}
 }
 

@@ -1,4 +1,4 @@
-// Polygons over growing arrays of vertices, on the way from face loops to a mesh.
+// Polygons over growing arrays of vertices: the way of both methods from the face loops of a graph to a mesh.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -11,7 +11,8 @@ struct Polygons {
 	std::vector<Eigen::Vector3d>    vertices, normals;
 	std::vector<std::vector<Index>> faces;
 
-	explicit Polygons(const HalfEdgeGraph& graph); // vertices only
+	// The vertices of a graph, and the disks that some of its face loops (of half-edges) bound.
+	Polygons(const HalfEdgeGraph& graph, const std::vector<std::vector<Index>>& faceLoops);
 
 	// A disk with this border. One that visits a vertex twice gets a ring of quads along its border, after
 	// which no face does: V and F grow by its n corners (F by n for n - 1 + 1), E by 2 n.

@@ -198,15 +198,7 @@ PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, 
 		faces = std::move(next);
 	}
 
-	PolygonMesh result;
-	result.vertices.resize(3, vertices.size());
-	result.normals.resize(3, vertices.size());
-	for (std::size_t v = 0; v < vertices.size(); ++v) {
-		result.vertices.col(v) = vertices[v];
-		result.normals.col(v)  = normals[v];
-	}
-	result.faces = NeighborLists::fromRows(faces);
-	return result;
+	return polygonMesh(vertices, normals, faces);
 }
 
 PolygonMesh cleanUpQuads(

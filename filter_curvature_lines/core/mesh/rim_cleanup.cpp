@@ -131,10 +131,8 @@ compacted(const PolygonMesh& mesh, const std::vector<Face>& faces, std::vector<c
 
 PolygonMesh mergeRimTriangles(const PolygonMesh& mesh, std::vector<char>& onFeature, double longest)
 {
-	std::vector<Face> faces;
-	for (Index f = 0; f < mesh.faceCount(); ++f)
-		faces.emplace_back(mesh.faces[f].begin(), mesh.faces[f].end());
-	PolygonMesh moved = mesh;
+	std::vector<Face> faces = faceLoopsOf(mesh);
+	PolygonMesh       moved = mesh;
 	while (true) {
 		const auto found = RimTriangles(faces, moved.vertices, onFeature).find(longest);
 		if (found.empty())

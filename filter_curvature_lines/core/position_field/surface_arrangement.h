@@ -1,20 +1,12 @@
-// The arrangement of curves on a triangulated surface: crossings, an embedded graph, its reduction, and
-// faces with a certificate that each of them is a disk. A09 section 6 with exact bookkeeping: where curves
-// cross, and in which order, follows from the order of their ends around triangles alone.
+// The arrangement of curves on a triangulated surface: their graph, its reduction, and faces with a certificate that
+// each of them is a disk (Euler's formula). A09 section 6 takes every loop of half-edges for a face.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include "polygon_mesh.h"
-#include "surface_curves.h"
+#include "surface_graph.h"
 
 namespace curvature_lines {
-
-// What is in the mesh whatever the curves do. Rims are always.
-struct SurfaceFeatures {
-	std::vector<char> edge; // of every edge of the triangles: a piece of a crease
-	std::vector<char>
-		corner; // of every vertex: a vertex of the mesh when a rim or crease runs through it
-};
 
 struct SurfaceArrangement {
 	PolygonMesh       mesh;

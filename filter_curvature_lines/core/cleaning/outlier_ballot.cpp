@@ -26,8 +26,8 @@ constexpr double lonelyDistance = 3.0;
 constexpr double coherence  = 1.5;
 constexpr int    meanShifts = 4;
 
-// The surface accepted by a small share of the votes, which at a corner is all that know the face, and from
-// there to the mean of the votes that agree, because the least of many distances is too optimistic.
+// Vector from the point to the surface that a small share of the votes accepts; at a corner no more of them belong to
+// the point's face. The smallest of many distances is biased to zero, so the mean of the votes that agree is taken.
 Vector3d surfaceOf(const Ballot& ballot, bool lonely)
 {
 	double      passed = 0.0;

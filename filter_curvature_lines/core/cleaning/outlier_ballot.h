@@ -1,4 +1,4 @@
-// The votes about one point and what they come to (in place of counting votes in A09 section 4.1).
+// The votes about one point and their result (in place of counting votes in A09 section 4.1).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -16,7 +16,7 @@ struct Vote {
 struct Ballot {
 	std::vector<Vote> votes, rim;
 	double            weight = 0.0, rimWeight = 0.0;
-	bool              proper = false; // a voter that knows the place and sees no edge
+	bool proper = false; // one of the voters has the point inside and is not over an edge
 	// Sums over the votes by nearness: OutlierVoter::heightError() and spacing.
 	double heightError = 0.0, spacing = 0.0, nearness = 0.0;
 
@@ -39,7 +39,7 @@ struct Verdict {
 	bool            lonely = false;
 };
 
-// What the voter says about point `p`, if it knows the place.
+// Adds the vote of a voter about point `p`, unless `p` is outside of its support.
 void addVote(
 	Ballot&                ballot,
 	const OutlierVoter&    voter,

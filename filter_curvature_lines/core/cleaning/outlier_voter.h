@@ -1,5 +1,5 @@
-// One voter of the outlier rejection: a robust quadric, the part of the surface it knows, and its judgement
-// of a point (in place of the operating region and its weights in A09 section 4.1).
+// One voter of the outlier rejection: a robust quadric and the part of the surface it was fitted to (in place of the
+// operating region and its weights in A09 section 4.1).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

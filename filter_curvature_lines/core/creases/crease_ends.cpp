@@ -48,6 +48,65 @@ bool continues(const CreaseEnd& a, const CreaseEnd& b, const CreaseTracing& trac
 	       (d - along * a.vertex.tangent).norm() < tracing.width(a.vertex);
 }
 
+// The end on the other side of a gap for each end, the nearest pairs first; -1: none.
+std::vector<Index> matesOf(
+	const std::vector<CreaseEnd>&   ends,
+	const std::vector<CreaseTrace>& traces,
+	const CreaseTracing&            tracing)
+{
+	const Eigen::Matrix3Xd positions = positionsOf(ends);
+	const NeighborSearch   search(positions);
+	const auto             mayJoin = [&](const CreaseEnd& a, const CreaseEnd& b) {
+        return (a.trace != b.trace || lengthInSpacings(traces[a.trace]) >= shortestLoop) &&
+               continues(a, b, tracing) && continues(b, a, tracing);
+	};
+	std::vector<std::tuple<double, Index, Index>> candidates; // distance, two ends
+	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
+		for (const Index b :
+		     search.within(positions.col(a), reachOf(ends[a].vertex, tracing.faceDeviation())))
+			if (a < b && mayJoin(ends[a], ends[b]))
+				candidates.emplace_back((positions.col(b) - positions.col(a)).norm(), a, b);
+	std::sort(candidates.begin(), candidates.end());
+	std::vector<Index> mate(ends.size(), -1);
+	for (const auto& [distance, a, b] : candidates)
+		if (mate[a] < 0 && mate[b] < 0) {
+			mate[a] = b;
+			mate[b] = a;
+		}
+	return mate;
+}
+
+// The traces from end `first` on, over all gaps, as one. Ends come in pairs, front and back of a trace: e ^ 1 is the
+// other end.
+CreaseTrace chainFrom(
+	Index                         first,
+	const std::vector<CreaseEnd>& ends,
+	const std::vector<Index>&     mate,
+	double                        step,
+	std::vector<CreaseTrace>&     traces,
+	std::vector<char>&            used)
+{
+	CreaseTrace chain;
+	Index       entry = first;
+	do {
+		used[entry] = used[entry ^ 1] = 1;
+		CreaseTrace& next             = traces[ends[entry].trace];
+		if (ends[entry].atBack)
+			reverse(next);
+		auto from = next.vertices.begin();
+		if (!chain.vertices.empty()) { // without what overlaps
+			const CreasePoint last = chain.vertices.back();
+			while (from + 1 != next.vertices.end() &&
+			       (from->position - last.position).dot(last.tangent) < 0.3 * step)
+				++from;
+		}
+		chain.vertices.insert(chain.vertices.end(), from, next.vertices.end());
+		entry = mate[entry ^ 1];
+	} while (entry >= 0 && entry != first);
+	chain.closed = entry == first;
+	return chain;
+}
+
 } // namespace
 
 std::vector<CreaseEnd> endsOf(const std::vector<CreaseTrace>& traces)
@@ -84,60 +143,20 @@ void joinGaps(const CreaseTracing& tracing, double step, std::vector<CreaseTrace
 	const std::vector<CreaseEnd> ends = endsOf(traces);
 	if (ends.empty())
 		return;
-	const Eigen::Matrix3Xd positions = positionsOf(ends);
-	const NeighborSearch   search(positions);
-	const auto             mayJoin = [&](const CreaseEnd& a, const CreaseEnd& b) {
-        return (a.trace != b.trace || lengthInSpacings(traces[a.trace]) >= shortestLoop) &&
-               continues(a, b, tracing) && continues(b, a, tracing);
-	};
-	std::vector<std::tuple<double, Index, Index>> candidates; // distance, two ends
-	for (Index a = 0; a < static_cast<Index>(ends.size()); ++a)
-		for (const Index b :
-		     search.within(positions.col(a), reachOf(ends[a].vertex, tracing.faceDeviation())))
-			if (a < b && mayJoin(ends[a], ends[b]))
-				candidates.emplace_back((positions.col(b) - positions.col(a)).norm(), a, b);
-	std::sort(candidates.begin(), candidates.end());
-	std::vector<Index> mate(ends.size(), -1);
-	for (const auto& [distance, a, b] : candidates)
-		if (mate[a] < 0 && mate[b] < 0) {
-			mate[a] = b;
-			mate[b] = a;
-		}
+	const std::vector<Index> mate = matesOf(ends, traces, tracing);
 
-	// Ends come in pairs, front and back of a trace: e ^ 1 is the other end.
 	std::vector<CreaseTrace> joined;
 	std::vector<char>        used(ends.size(), 0);
 	for (CreaseTrace& trace : traces)
 		if (trace.closed)
 			joined.push_back(std::move(trace));
-	const auto walk = [&](Index first) {
-		CreaseTrace chain;
-		Index       entry = first;
-		do {
-			used[entry] = used[entry ^ 1] = 1;
-			CreaseTrace& next             = traces[ends[entry].trace];
-			if (ends[entry].atBack)
-				reverse(next);
-			auto from = next.vertices.begin();
-			if (!chain.vertices.empty()) { // what overlaps
-				const CreasePoint last = chain.vertices.back();
-				while (from + 1 != next.vertices.end() &&
-				       (from->position - last.position).dot(last.tangent) < 0.3 * step)
-					++from;
-			}
-			chain.vertices.insert(chain.vertices.end(), from, next.vertices.end());
-			entry = mate[entry ^ 1];
-		} while (entry >= 0 && entry != first);
-		chain.closed = entry == first;
-		joined.push_back(std::move(chain));
-	};
 	const auto count = static_cast<Index>(ends.size());
-	for (Index e = 0; e < count; ++e)
+	for (Index e = 0; e < count; ++e) // open chains first, from an end that has no mate
 		if (!used[e] && mate[e] < 0)
-			walk(e);
+			joined.push_back(chainFrom(e, ends, mate, step, traces, used));
 	for (Index e = 0; e < count; ++e)
 		if (!used[e])
-			walk(e);
+			joined.push_back(chainFrom(e, ends, mate, step, traces, used));
 	traces = std::move(joined);
 }
 

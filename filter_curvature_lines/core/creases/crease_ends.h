@@ -1,4 +1,4 @@
-// Ends of traced creases, and traces that go on beyond a gap. Internal to creases.
+// Ends of traced creases, and traces joined over gaps. Internal to creases.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -20,13 +20,15 @@ namespace {
 
 constexpr double countTolerance = 0.03; // beyond, the density is corrected once
 
-struct Traced {
+// Curves on the scaffold and the faces between them.
+struct ArrangedLines {
 	SurfaceCurves      curves;
 	SurfaceArrangement arrangement; // its mesh cleaned up
 	Index              lineEnds = 0;
 };
 
-Traced trace(
+// Phases for a density, the curves where these are whole numbers, and their arrangement.
+ArrangedLines solveAndArrange(
 	const Scaffold&                 scaffold,
 	const CrossField&               field,
 	const LineDensity&              density,
@@ -36,12 +38,14 @@ Traced trace(
 {
 	const PositionField positions =
 		positionField(scaffold.mesh, field, density, pins, options.phases);
-	Traced traced;
-	traced.curves      = integerLines(scaffold.mesh, field, positions);
-	traced.arrangement = arrangeOnSurface(scaffold.mesh, field.normals, features, traced.curves);
-	traced.lineEnds    = positions.lineEnds;
-	traced.arrangement.mesh = cleanUpQuads(traced.arrangement.mesh, traced.arrangement.onFeature);
-	return traced;
+	ArrangedLines arranged;
+	arranged.curves = integerLines(scaffold.mesh, field, positions);
+	arranged.arrangement =
+		arrangeOnSurface(scaffold.mesh, field.normals, features, arranged.curves);
+	arranged.lineEnds = positions.lineEnds;
+	arranged.arrangement.mesh =
+		cleanUpQuads(arranged.arrangement.mesh, arranged.arrangement.onFeature);
+	return arranged;
 }
 
 void projectVertices(
@@ -105,28 +109,28 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	wanted.anisotropy     = options.anisotropy;
 	LineDensity density   = lineDensity(scaffold, field, curvature, wanted);
 	progress.report(0.5);
-	Traced       traced = trace(scaffold, field, density, pins, features, options);
-	const double ratio  = traced.arrangement.mesh.vertexCount() / options.targetVertices;
+	ArrangedLines arranged = solveAndArrange(scaffold, field, density, pins, features, options);
+	const double  ratio    = arranged.arrangement.mesh.vertexCount() / options.targetVertices;
 	progress.report(0.7);
 	if (ratio > 0.0 && std::abs(ratio - 1.0) > countTolerance) {
 		density /= std::sqrt(ratio);
-		Traced       again = trace(scaffold, field, density, pins, features, options);
-		const double next  = again.arrangement.mesh.vertexCount() / options.targetVertices;
+		ArrangedLines again = solveAndArrange(scaffold, field, density, pins, features, options);
+		const double  next  = again.arrangement.mesh.vertexCount() / options.targetVertices;
 		if (std::abs(next - 1.0) < std::abs(ratio - 1.0))
-			traced = std::move(again);
+			arranged = std::move(again);
 	}
-	result.lineEnds           = traced.lineEnds;
-	result.crossings          = traced.arrangement.crossings;
-	result.repairedComponents = traced.arrangement.repairedComponents;
-	result.droppedComponents += traced.arrangement.lostComponents;
+	result.lineEnds           = arranged.lineEnds;
+	result.crossings          = arranged.arrangement.crossings;
+	result.repairedComponents = arranged.arrangement.repairedComponents;
+	result.droppedComponents += arranged.arrangement.lostComponents;
 	progress.report(0.9);
 	if (options.keepLines) {
-		result.lines           = linesOf(traced.curves, scaffold, field, cloud, curvature);
+		result.lines           = linesOf(arranged.curves, scaffold, field, cloud, curvature);
 		result.lines.crossings = result.crossings;
 	}
 
-	const std::vector<char> onFeature = std::move(traced.arrangement.onFeature);
-	result.mesh                       = std::move(traced.arrangement.mesh);
+	const std::vector<char> onFeature = std::move(arranged.arrangement.onFeature);
+	result.mesh                       = std::move(arranged.arrangement.mesh);
 	if (options.mesh.splitConcave)
 		result.mesh = withConvexFaces(result.mesh);
 	projectVertices(

@@ -8,15 +8,11 @@ import numpy as np
 
 from clouds.cleaning import Cloud
 from clouds.spacing import nearest_neighbor_distances
-from harness.comparison import Figures
+from harness.comparison import Figures, prefixed
 from harness.results import Moved, Selection
 from harness.shared import rms
 
 CLEARLY_OUTSIDE = 3.0  # noise units from the surface: nearer outliers cannot be told from noise
-
-
-def prefixed(part: str, figures: Figures) -> Figures:
-    return {f"{part}, {name}" if part else name: value for name, value in figures.items()}
 
 
 def selection_figures(cloud: Cloud, selection: Selection) -> Figures:

@@ -6,7 +6,7 @@ import numpy as np
 
 from clouds.curvature import Cloud
 from clouds.generated import Truth
-from harness.comparison import Figures
+from harness.comparison import Figures, prefixed
 from harness.results import Estimate
 from harness.shared import axis_angle, rms
 
@@ -50,9 +50,7 @@ def surface_figures(cloud: Cloud, estimate: Estimate) -> Figures:
     for name, mask in cloud.parts.items():
         truth, chosen = part_of(cloud, mask, estimate)
         errors = mean_curvature_errors(truth, estimate.k1[chosen], estimate.k2[chosen])
-        prefix = f"{name}, " if name else ""
-        figures[f"{prefix}H"] = rms(errors)
-        figures[f"{prefix}direction"] = direction_error(truth, estimate.d1[chosen])
+        figures |= prefixed(name, {"H": rms(errors), "direction": direction_error(truth, estimate.d1[chosen])})
     return figures
 
 

@@ -17,6 +17,11 @@ from harness.verdicts import Target, number, verdict
 Figures = dict[str, float]  # name, with its unit where it has one: value
 
 
+def prefixed(part: str, figures: Figures) -> Figures:
+    """Figures of a part of a cloud; the whole has no name."""
+    return {f"{part}, {name}" if part else name: value for name, value in figures.items()}
+
+
 class Outcome:
     """Figures of one method on the clouds of all seeds."""
 

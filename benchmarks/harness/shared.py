@@ -15,8 +15,8 @@ MESHLAB_SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
 
 sys.path.insert(0, str(CHECKOUT / "tests" / "python"))
 
-import helpers  # noqa: E402
-from helpers import (  # noqa: E402
+import helpers  # noqa: E402, F401
+from helpers import (  # noqa: E402, F401
     BOUNDARY,
     CURVATURE,
     DENOISE,
@@ -33,26 +33,3 @@ from helpers import (  # noqa: E402
     layer,
     rms,
 )
-
-__all__ = [
-    "BOUNDARY",
-    "BUILD",
-    "CHECKOUT",
-    "CURVATURE",
-    "DENOISE",
-    "FEATURES",
-    "MESH",
-    "MESHLAB_SAMPLES",
-    "M_WEIGHTED",
-    "OUTLIERS",
-    "PIPELINE",
-    "PROJECT",
-    "RAY_TRACE",
-    "RESULTS",
-    "TRACE",
-    "analytic_surfaces",
-    "axis_angle",
-    "helpers",
-    "layer",
-    "rms",
-]

@@ -51,7 +51,9 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         assert set(re.findall(r"`([a-z_]+\d?)`", prose)) <= known, page
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/guide.md", "docs/gallery.md", "docs/contributing.md", "docs/method.md"])
+@pytest.mark.parametrize(
+    "page", ["README.md", "docs/guide.md", "docs/gallery.md", "docs/contributing.md", "docs/method.md"]
+)
 def test_links_lead_somewhere(page):
     file = CHECKOUT / page
     for target in re.findall(r"\]\(([^)#]+)\)", file.read_text()):

@@ -14,16 +14,16 @@ namespace {
 // By experiment: clean bunny and cow, a sheet with grooves, and clusters beside a torus, which must stay rejected
 // (benchmarks/cleaning.py). Groups of 2 and of 20 lost clusters.
 constexpr Index smallVoter = 30; // points of the patches that judge groups
-constexpr Index fewestInGroup =
-	smallVoter;                    // smaller groups would have the majority of such a patch
-constexpr double linkLength = 2.0; // spacings: rejected points so near are of one group
-constexpr double spacingOfCrowd =
-	0.72; // spacing over the distance to the 6th neighbour, of evenly spread points
-constexpr double oneSurface =
-	1.5; // deviation over heightDeviation up to which a patch is one surface
-constexpr double acceptedShare =
-	0.25;                      // of the points on the patch, those that join the group to the rest
-constexpr int mostPasses = 30; // each takes back points within a patch of the last
+// Smaller groups would have the majority of such a patch.
+constexpr Index  fewestInGroup = smallVoter;
+constexpr double linkLength    = 2.0; // spacings: rejected points so near are of one group
+// Spacing over the distance to the 6th neighbour, of evenly spread points.
+constexpr double spacingOfCrowd = 0.72;
+// Deviation over heightDeviation up to which a patch is one surface.
+constexpr double oneSurface = 1.5;
+// Of the points on the patch, those that join the group to the rest.
+constexpr double acceptedShare = 0.25;
+constexpr int    mostPasses    = 30; // each takes back points within a patch of the last
 
 class GroupRestoration {
 public:

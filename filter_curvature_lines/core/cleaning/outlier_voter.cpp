@@ -23,14 +23,14 @@ using Eigen::Vector3d;
 constexpr double denseness        = 0.6;
 constexpr double denserThanCentre = 0.5;
 constexpr Index  nearCentre       = 9;
-constexpr double fewestKept =
-	0.8; // of the points asked for; else a ball of up to largestBall times as many
+// Of the points asked for; else a ball of up to largestBall times as many.
+constexpr double fewestKept  = 0.8;
 constexpr double largestBall = 4.0; // points, over those asked for
 // Least scale of a fit, in spacings: what a quadric misses on an exact surface.
 constexpr double minDeviation = 0.06;
 constexpr double onSurface    = 3.0; // scales: points within are on the surface
-constexpr double minMajority =
-	0.35; // of the points are on the surface, or there is no vote (as in fitPatchRobustly)
+// Of the points are on the surface, or there is no vote (as in fitPatchRobustly).
+constexpr double minMajority = 0.35;
 // Squared Mahalanobis distance from the points on the surface: for a uniform disk the rim is at 4, for a quarter of a
 // disk the corner at 7.4. A little more than both.
 constexpr double insideDistance2 = 4.5;

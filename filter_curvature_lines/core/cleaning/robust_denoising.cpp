@@ -59,12 +59,12 @@ constexpr double fewestPatches = 6.0;
 // radius is proportional to (noise spacing)^(1/5).
 constexpr double unitExponent = 0.2;
 
-constexpr Index  fewestPoints = 8;    // a quadric and a residual
-constexpr Index  testPoints   = 5000; // that scores are taken from
-constexpr double testOverlap =
-	19.0; // half of BlendOptions::overlap: scores need less than the result
-constexpr double maxResidual =
-	3.0; // deviations: a larger leave-one-out residual counts as this in scores
+constexpr Index fewestPoints = 8;    // a quadric and a residual
+constexpr Index testPoints   = 5000; // that scores are taken from
+// Half of BlendOptions::overlap: scores need less than the result.
+constexpr double testOverlap = 19.0;
+// Deviations: a larger leave-one-out residual counts as this in scores.
+constexpr double maxResidual = 3.0;
 // Scores leave out points whose patches are less pure than minPurity, if there are edges: if patches are less pure than
 // edgePurity at more than fewEdges of the points, and at least minOffEdgeShare of the points remain.
 constexpr double minPurity       = 0.5;

@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 // spacings plus so many faceDeviations. By experiment (benchmarks/creases.py).
 constexpr double reachSpacings   = 4.0;
 constexpr double reachDeviations = 4.0;
-constexpr double straightOn =
-	0.85; // cosine, 32 degrees: tangents and normals of ends that continue each other
+// Cosine, 32 degrees: tangents and normals of ends that continue each other.
+constexpr double straightOn = 0.85;
 
 double lengthOf(const CreaseTrace& trace)
 {

@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 // By experiment (benchmarks/creases.py).
-constexpr double parallel =
-	0.9; // cosine, 26 degrees: a crease that runs alongside makes no junction
+// Cosine, 26 degrees: a crease that runs alongside makes no junction.
+constexpr double parallel  = 0.9;
 constexpr double minLength = 5.0; // spacings; a shorter curve needs corners at both ends
 constexpr int    maxRounds = 20;  // each drops a stub; three or so are usual
 // Weight of the ends of the curves against the planes of their faces, which place a corner: decides only along

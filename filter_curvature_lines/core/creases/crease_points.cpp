@@ -25,10 +25,10 @@ constexpr double deviationsInRadius = 6.0;
 constexpr Index  deviationPoints    = 2000; // at which faceDeviation is measured
 // Tangent of the turn of a normal up to which a face is continued: 27 degrees.
 constexpr double largestTurn = 0.5;
-constexpr double groupShare =
-	0.85;                     // of the smallest angle: normals that differ by less are of one face
-constexpr int maxFaces   = 6; // around one point; corners have three or four
-constexpr int minMembers = 3; // points of a face
+// Of the smallest angle: normals that differ by less are of one face.
+constexpr double groupShare = 0.85;
+constexpr int    maxFaces   = 6; // around one point; corners have three or four
+constexpr int    minMembers = 3; // points of a face
 // Faces at a larger angle are the two sides of a thin sheet.
 constexpr double largestAngle = 165.0 * EIGEN_PI / 180.0;
 // Points of both faces lie within this distance of a crease, in spacings or faceDeviations, and of all points of a face

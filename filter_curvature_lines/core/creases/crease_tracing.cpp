@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 // By experiment, as those of crease_points.cpp (benchmarks/creases.py).
-constexpr double window =
-	3.0; // local spacings along the curve to each side, in which the curve is a parabola
+// Local spacings along the curve to each side, in which the curve is a parabola.
+constexpr double window = 3.0;
 // Distance from the curve, in spacings or faceDeviations, beyond which points are of another crease.
 constexpr double widthSpacings   = 1.5;
 constexpr double widthDeviations = 2.5;

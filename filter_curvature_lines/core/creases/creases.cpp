@@ -17,8 +17,8 @@ namespace {
 constexpr const char* progressLabel = "Finding creases";
 
 // By experiment (benchmarks/creases.py).
-constexpr double followShare =
-	0.6; // of the smallest angle: how far a crease is followed as it fades
+// Of the smallest angle: how far a crease is followed as it fades.
+constexpr double followShare = 0.6;
 constexpr double autoSpacing = 0.7;  // median point spacings: of steps, and of vertices by default
 constexpr double finest      = 0.05; // median point spacings: least distance of vertices
 // The shape operator at a point comes from those of so many neighbours whose normals differ from what the round before

@@ -18,36 +18,56 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr Index  firstCount          = 42; // points in the smallest ball
-constexpr Index  smallestCount       = 14; // of a tiny cloud
+// Without a source of their own: chosen by experiment on tori, an ellipsoid, a sphere, a cylinder, helicoids and cubes
+// with 0 to 2 % noise; benchmarks/curvature.py judges them. docs/method.md, "Scale", has the formulas.
+
+// Candidate radii: from the ball that holds firstCount points (smallestCount in a tiny cloud), the median over
+// countedRadii points, up to a share of the bounding-box diagonal, each ladderStep times the one before. With 1.45 or 1.5
+// the selection is a third faster and misses the best scale on some clouds.
+constexpr Index  firstCount          = 42;
+constexpr Index  smallestCount       = 14;
 constexpr Index  countedRadii        = 60;
-constexpr double denseShare          = 0.1;
-constexpr double mostFiner           = 12.0; // levels
 constexpr double ladderStep          = 1.3;
-constexpr double largestHeightRadius = 0.22; // unit frame: of the bounding-box diagonal
+constexpr double largestHeightRadius = 0.22; // unit frame
 constexpr double largestNormalRadius = 0.36;
-constexpr Index  residualPlaces      = 256;
-constexpr double smoothShare         = 1.0 / 3.0; // of the places, at least, no edge is near
-constexpr int    probeIterations     = 3;
-constexpr double largestResidual     = 0.2;  // radii, median over probes
-constexpr double clippedResidual     = 0.15; // the least a ball within the noisy layer has
-constexpr double rimOffset           = 0.12; // radii: probes with a larger one lie at a rim
-constexpr double trim                = 0.05;
-// A part of the cloud has a scale of its own if it is this large and its risk falls to this share.
-constexpr Index       minPoolPoints  = 1280;
-constexpr Index       minPoolProbes  = 32;
-constexpr Index       errorProbes    = 24;
-constexpr Index       minComponent   = 128;  // probes of a component that is a cloud of its own
-constexpr double      medianOfChi2   = 0.79; // over the mean, of three squares
-constexpr Index       poolStride     = 4;    // pools of neighbouring probes hardly differ
-constexpr Index       hopelessStride = 32;
-constexpr double      hopelessRatio  = 4.0; // the next finer level varies about five times as much
-constexpr double      surelyErrors   = 2.0; // standard errors: a bias of more is certain
-constexpr int         biasLevels     = 3;   // finer ones it takes to know a bias
-constexpr double      switchRatio    = 0.5;
-constexpr double      riskExponent   = 4.0;
-constexpr double      smallestShare  = 0.1; // of the best one's
-constexpr std::size_t maxMixed       = 4;
+// Clouds of which a share of denseShare is denser than the rest get finer levels, mostFiner at most.
+constexpr double denseShare = 0.1;
+constexpr double mostFiner  = 12.0;
+// quadricResidual is this quantile over so many places: no edge is near that many of them.
+constexpr Index  residualPlaces = 256;
+constexpr double smoothShare    = 1.0 / 3.0;
+// Of a height fit at a probe, each in the frame of the one before.
+constexpr int probeIterations = 3;
+// Residuals in radii. A scale with a larger median over the probes is not valid; .12 in place of .2 loses the right scales
+// at 2 % noise, .4 changes nothing. A ball no thicker than the noisy layer has at least the second one.
+constexpr double largestResidual = 0.2;
+constexpr double clippedResidual = 0.15;
+// Radii: a probe whose points have a mean farther off lies at a rim.
+constexpr double rimOffset = 0.12;
+constexpr double trim      = 0.05; // share of the terms of a mean that are left out
+// A part of the cloud gets scales of its own if it has this many points and probes, and the risk of the best of them is
+// less than switchRatio of that of the scale chosen for more points.
+constexpr Index  minPoolPoints = 1280;
+constexpr Index  minPoolProbes = 32;
+constexpr double switchRatio   = 0.5;
+constexpr Index errorProbes = 24; // probes around a place whose differences give the variance there
+// Probes of a connected part that is treated as a cloud of its own.
+constexpr Index minComponent = 128;
+// Median over mean of a sum of three squares of normally distributed numbers.
+constexpr double medianOfChi2 = 0.79;
+// Scales are chosen at every fourth probe, whether finer levels can help is asked at every 32nd: pools of neighbouring
+// probes hardly differ.
+constexpr Index poolStride     = 4;
+constexpr Index hopelessStride = 32;
+// Finer levels are given up when the least variance of a level is this many times the best risk of levels that are
+// biasLevels coarser; the variance of the next finer level is about five times as large.
+constexpr double hopelessRatio = 4.0;
+constexpr int    biasLevels    = 3;
+constexpr double surelyErrors  = 2.0; // standard errors: a bias of more is certain
+// Scales are averaged with weight (least risk / risk)^riskExponent, those above smallestShare, maxMixed at most.
+constexpr double      riskExponent  = 4.0;
+constexpr double      smallestShare = 0.1;
+constexpr std::size_t maxMixed      = 4;
 
 struct Family {
 	int    degree;
@@ -168,9 +188,9 @@ private:
 		return medianOf(residuals);
 	}
 
-	// A ball that clips the noisy layer takes the noise for shape: its residual is large for its radius,
-	// and so is that of all finer ones, which have nothing to tell either. (A ball too large for the shape
-	// has such a residual as well, but finer ones have not.)
+	// In a ball no thicker than the noisy layer noise looks like shape. Its residual is large for its radius, and so are
+	// those of all finer balls, none of which is valid. (A ball too large for the shape has such a residual as well, but
+	// finer ones have not.)
 	void dropBelowNoise()
 	{
 		for (std::size_t c = 0; c < m_trials.size(); ++c) {
@@ -419,7 +439,7 @@ private:
 			for (const HeightFits& fit : fits)
 				residuals.push_back(fit.of(trial.scale.height.degree).residual / radius);
 			trial.scale.usualResidual = quantileOf(residuals, smoothShare) * radius;
-			// What lies within the noise is judged by its residual: no need of anchors for that.
+			// Scales within the noise are dropped for their residual; anchors are not needed to see that.
 			if (trial.scale.normalRadius > 0.0 && quantileOf(residuals, 0.1) < largestResidual)
 				(trial.scale.height.degree == 2 ? ofAnchors.quadric : ofAnchors.quartic) = true;
 		}
@@ -468,7 +488,7 @@ private:
 	std::vector<Trial> m_trials;
 };
 
-// Probes near a rim speak only if there are hardly others.
+// Probes away from rims; all of them if less than 30 % are. At a rim a fit sees one side only.
 std::vector<Index> innerProbes(const std::vector<Trial>& trials, double middleRadius)
 {
 	const auto off = [&](const Trial& t) {
@@ -543,8 +563,8 @@ ScaleSelection selectScales(
 		for (const Index p : components[c].probes())
 			componentOf[p] = Index(c);
 	const ProbeComponent everyone(selection.positions, inner);
-	// From large pools to small ones: what a larger pool knows is not given up for what a smaller one
-	// merely thinks.
+	// From large pools to small ones: the risk of a small pool is uncertain, so it has to be much lower to replace the
+	// choice of a larger one.
 	const Index smallestPool =
 		std::max(minPoolProbes, static_cast<Index>(std::int64_t(minPoolPoints) * probes / n));
 	std::vector<RiskOfPool> risksOf;

@@ -1,4 +1,4 @@
-// Weights from standard errors, larger ones at rims, and the turning of the field from differences.
+// Weights from standard errors, which are enlarged at rims, and the turning of the field from differences.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "direction_trust.h"
 
@@ -15,17 +15,20 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr double sureErrors = 6.0;   // a direction whose k1 - k2 is this many errors has weight 1
+// A direction whose k1 - k2 is this many errors has weight 1; by experiment.
+constexpr double sureErrors = 6.0;
 constexpr double mostWeight = 100.0; // keeps the problem well-conditioned
 constexpr double sameFace   = 0.5;   // dot product of normals
 // Offset of the mean of the points around from the middle one, in their RMS distance: 0.6 at a straight rim.
 constexpr double oneSided = 0.4;
-constexpr Index  fewest   = 12; // points whose mean tells
-// Measured on a noisy helicoid: at its rim directions are off 25 times as much as inside, e times less with
-// every ninth of the radius of the fit away from it; more doubt than that pays, as errors at rims go together.
-constexpr double rimDoubt       = 80.0;
-constexpr double rimFading      = 9.0; // per radius of the fit
-constexpr double trusted        = 1.5; // doubt of points whose turning speaks for those at rims
+constexpr Index  fewest   = 12; // points, or their mean says nothing
+// Factor of the error at rims, and how fast it falls with the distance over the radius of the fit. Measured on noisy
+// helicoids: at a rim directions err 25 times as much as inside, and e times less with every ninth of the radius. A
+// larger factor gives better lines, because the errors of neighbours at a rim are alike (benchmarks/lines.py).
+constexpr double rimDoubt  = 80.0;
+constexpr double rimFading = 9.0;
+// The turning of the field at a rim is that of the nearest points whose factor is below this.
+constexpr double trusted        = 1.5;
 constexpr Index  trustedNearest = 40;
 
 // The points with positive weight at a point are about it, unless it is next to a rim or an edge.
@@ -105,7 +108,8 @@ Vector3d turningAt(
 		moments += weight[j] * d * d.transpose();
 		right += weight[j] * turn * d;
 	}
-	// Twice over, for the neighbours' doubt is in it as well.
+	// A ridge that draws the turning to zero where the point's own direction is uncertain; the neighbours' weights
+	// do so where theirs are.
 	moments.diagonal().array() += 1e-300 + moments.trace() * (0.01 + 1.0 / (weight[i] + 1e-9));
 	return frame.toSpace(moments.ldlt().solve(right));
 }

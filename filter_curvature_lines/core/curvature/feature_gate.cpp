@@ -13,20 +13,22 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index minMembers = 5; // besides p_i
-// of sigma: farther from the model is another piece of the surface
+// By experiment on tori and cubes (benchmarks/paper_figures.py and accuracy.py, tests of robust_curvature). Beyond A09.
+constexpr Index minMembers = 5; // besides p_i: enough pairs for a model
+// Sigmas: points farther from the model lie on another piece of the surface.
 constexpr double gateFactor = 2.5;
-// A point's own sigma counts within these multiples of the common one: below, the gate would cut into
-// plain noise; above, a sigma that a crease inflates would open it.
+// A point's own sigma counts within these multiples of the common one: a smaller one would leave out points for plain
+// noise, a larger one is that of a crease.
 constexpr double minScale = 2.0;
 constexpr double maxScale = 3.0;
-constexpr double maxTurn  = 2.0;
-// radians: exact normals still turn by the curvature's own change
+// Norm of a model, per radius of the region: a larger one explains points beyond a crease as one steep surface.
+constexpr double maxTurn = 2.0;
+// Radians: exact normals still turn by the change of the curvature itself.
 constexpr double minCommonScale = 1e-3;
 // p_i's side may hold less than half of the region at a crease, a third at a corner.
 constexpr double creaseQuantile = 0.3;
-constexpr Index  consenting     = 20;  // neighbours asked about n_i
-constexpr double consentAngle   = 0.5; // radians, that they may differ by
+constexpr Index  consenting     = 20;  // neighbours whose normals are compared with n_i
+constexpr double consentAngle   = 0.5; // radians between normals that agree
 
 double residual(const OperatingRegion& region, const VariationModel& model, Index j)
 {

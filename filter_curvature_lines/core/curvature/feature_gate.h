@@ -35,9 +35,9 @@ public:
 		const VariationModel&  minimumNeighborhoodStart,
 		const IrlsOptions&     options);
 
-	// The points that agree with the best of the fits, or with a flat surface. A fit that turns the normal
-	// by more than a right angle within the region is a wall seen from above: it explains all points beyond
-	// a crease, because they project onto one line.
+	// The points that agree with the best of the fits, or with a flat surface. Fits that turn the normal by more
+	// than a right angle within the region are left out: the points beyond a crease project onto one line in the
+	// tangent plane, and such a fit explains all of them as one steep surface.
 	GateResult select(const OperatingRegion& region, const CentreFits& fits, double commonScale);
 
 private:
@@ -46,7 +46,7 @@ private:
 	std::vector<double> m_residuals, m_sorted, m_ones;
 };
 
-// What the near neighbours think of n_i. They support a normal when theirs are similar and they lie near
+// How far the nearest neighbours agree with n_i. They support a normal when theirs are similar and they lie near
 // its plane through p_i.
 struct NormalConsensus {
 	Eigen::Vector3d normal;           // the neighbour's normal with most support

@@ -17,19 +17,21 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Constants that A09 and R07 do not give, by experiment (benchmarks/lines.py: capsule, sphere, cube, helicoid).
 constexpr double maxNormalCosine = 0.5; // 60 degrees: beyond, two points are on different faces
-// a shorter projected axis is no direction (poles of a sphere)
+// A shorter projected axis is no direction (poles of a sphere).
 constexpr double minProjection = 0.15;
 constexpr double maxAxisCosine = 0.9;  // an axis closer to a normal gives way to the second one
 constexpr double flatTurn      = 0.02; // radians over one operating region that count as flat
-// variances in this ratio: PCA axes are accidents of sampling
+// Ratio of the variances along the two axes above which these are due to the sampling.
 constexpr double degenerateAxes = 0.7;
-constexpr double minFourfold    = 0.2; // of the fourth moment: 0 for a disk, 0.43 for a square
-// 35 degrees from point to point; about a singular one are 60 or more
+// Of the fourth moment: 0 for a disk, 0.43 for a square (derived).
+constexpr double minFourfold = 0.2;
+// 35 degrees from point to point; about a singular one there are 60 or more.
 constexpr double continuedCosine = 0.82;
-// Points around a region over the root of those in it: a disk has 3.5, half of one at a rim 2.5.
+// Points around a region over the root of those in it: a disk has 3.5 (derived), half of one at a rim 2.5.
 constexpr double leastBorder = 2.0;
-constexpr double minFlatness = 0.9; // |mean normal| of a region that has a plane to speak of
+constexpr double minFlatness = 0.9; // length of the mean normal of a region that is nearly flat
 
 // A09: ratio above the threshold. The ratio is signed, so that minimal surfaces (k1 = -k2) are not
 // umbilic; the other two tests see what a ratio of noisy or vanishing numbers cannot.

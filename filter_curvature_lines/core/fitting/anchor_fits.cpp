@@ -9,21 +9,28 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double anchorSpacing    = 0.18; // in radii
+// By experiment (benchmarks/curvature.py). Distances of anchors, in radii: .12 and .25 chose worse scales on a small
+// helicoid; a sketch, to judge a scale by, may be coarser.
+constexpr double anchorSpacing    = 0.18;
 constexpr double sketchSpacing    = 0.22;
-constexpr int    anchorIterations = 2;
-constexpr double largestHeight    = 0.4; // radii, of the plane through a ball above its centre
-constexpr double outlierRatio     = 4.5;
-constexpr double outlierFloor     = 0.02;      // radii
-constexpr double fullSupport      = 1.0 / 3.0; // mean of the kernel over a disc
-constexpr double leastSupport     = 0.2;
-constexpr double supportScatter   = 1.5; // five standard deviations of the mean, of one sample
+constexpr int    anchorIterations = 2; // of a height fit, each in the frame of the one before
+// Radii between the plane through a ball and its centre, beyond which the ball is moved onto the surface.
+constexpr double largestHeight = 0.4;
+// A point is an outlier when it lies this many residuals and radii off the surface fitted around it.
+constexpr double outlierRatio = 4.5;
+constexpr double outlierFloor = 0.02;
+// And when the points of its ball have a mean weight below leastSupport. The mean of the kernel over a disc around the
+// centre is a third (derived); of a finite number of points it varies by supportScatter over its root, which is five
+// standard deviations.
+constexpr double fullSupport    = 1.0 / 3.0;
+constexpr double leastSupport   = 0.2;
+constexpr double supportScatter = 1.5;
 
 } // namespace
 
 bool isOutlier(const SurfaceElement& element, const Eigen::Vector3d& position, double radius)
 {
-	// The ball of a point off the surface holds points near its rim only, a chance void has some inside.
+	// The ball of a point off the surface holds points near its rim only; in a sparse place there are some inside.
 	const double scatter = supportScatter / std::sqrt(element.samples + 1.0);
 	return element.support < std::min(leastSupport, fullSupport - scatter) ||
 	       (element.position - position).norm() >

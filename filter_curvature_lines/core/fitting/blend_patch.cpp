@@ -1,4 +1,4 @@
-// Fits to points of the ball, whose weights tell the supports apart.
+// Weighted fits to the points of a ball, one function per kind of support.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "blend_patch.h"
 
@@ -15,15 +15,20 @@ namespace {
 using Eigen::Vector3d;
 using Support = BlendOptions::Support;
 
-// noise units that a ball reaches beyond the disk of a patch
-constexpr double slabNoise       = 3.0;
-constexpr double minArcCosine    = 0.35; // cosine; arcs stay well below a quarter of a turn
-constexpr double maxNormalWidths = 2.0;  // gate widths
-constexpr double heightCutoff    = 5.0;  // noise units
+// By experiment (benchmarks/cleaning.py); "deviations" are BlendInput::pointDeviation.
+constexpr double slabNoise = 3.0; // deviations that a ball reaches beyond the disk of a patch
+// Cosine, 70 degrees: arcs stay well below a quarter of a turn.
+constexpr double minArcCosine    = 0.35;
+constexpr double maxNormalWidths = 2.0; // beyond which normals are of another face
+// Deviations: heights beyond do not count in patches of one face.
+constexpr double heightCutoff = 5.0;
+// Radii of the steps of fitOneFace(), over that of the patch: from the points that surely lie on the centre's face on.
 constexpr double growth[]        = {1.0 / 3.0, 0.6, 1.0, 1.0};
-constexpr double maxPurityExcess = 40.0;
-constexpr double farthestNoise   = 10.0; // that a point is from its surface, in noise units
-constexpr double farthestSpacing = 0.05; // and spacings
+constexpr double maxPurityExcess = 40.0; // standard errors: purity is next to 0 already
+// A point is no farther than this from its surface, in deviations and in spacings. Without the bound 90 points beside the
+// edges of an exact cube went to a wrong face.
+constexpr double farthestNoise   = 10.0;
+constexpr double farthestSpacing = 0.05;
 
 struct Scratch {
 	std::vector<Index>    near;
@@ -126,7 +131,7 @@ void toFrame(const SurfacePatch& patch, Scratch& scratch)
 	}
 }
 
-// Grows from the centre: the gate of each step is the normal that the step before predicts.
+// Grows from the centre: points count whose normals are near what the quadric of the step before predicts.
 bool fitOneFace(SurfacePatch& patch, double noise, double width, Scratch& scratch)
 {
 	const double cutoff = heightCutoff * noise;
@@ -186,7 +191,7 @@ double farthestMove(const BlendInput& input, Index i)
 	return farthestNoise * input.pointDeviation[i] + farthestSpacing * input.spacing[i];
 }
 
-// Guides of the other supports have left the noise behind.
+// Guides of the other supports are free of noise, so that their points lie within the radius.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
 	return options.support == Support::Free

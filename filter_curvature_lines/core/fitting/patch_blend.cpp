@@ -18,11 +18,14 @@ namespace {
 using Eigen::Vector3d;
 using Support = BlendOptions::Support;
 
-constexpr double acrossEdge        = 0.1;  // gate: a normal that deviates by 1.5 widths
-constexpr double maxAcrossLeverage = 0.2;  // of a patch that tells where the edge is
-constexpr double radiusRatio       = 1.25; // of overlapping patches: radii are smooth
-constexpr double minLeverage       = 1e-12;
-constexpr double minRemaining      = 0.02; // of a residual, by a point's own influence
+// By experiment (benchmarks/cleaning.py, sharp edges) but for the last two, which keep divisions finite.
+// Weight by normals below which a patch is across an edge: 1.5 widths.
+constexpr double acrossEdge = 0.1;
+// Of a patch that predicts where the face beyond an edge is.
+constexpr double maxAcrossLeverage = 0.2;
+constexpr double radiusRatio  = 1.25; // between the radii of overlapping patches: radii are smooth
+constexpr double minLeverage  = 1e-12;
+constexpr double minRemaining = 0.02; // of a residual, without the influence of the point itself
 
 // What a patch beyond an edge says about a point.
 struct FaceVote {
@@ -115,8 +118,8 @@ Prediction predictByArcLength(
 	return p;
 }
 
-// A patch too far away is one of another face, and would else be all there is to hear where those of the point's
-// own face reach over an edge.
+// Weight by the residual. A patch too far away is one of another face. Without this bound it would decide alone where the
+// patches of the point's own face all reach over an edge.
 double acceptance(const BlendInput& input, const BlendOptions& options, double residual, Index i)
 {
 	if (options.acceptance <= 0.0 || !(input.pointDeviation[i] > 0.0))

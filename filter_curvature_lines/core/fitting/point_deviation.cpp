@@ -1,4 +1,4 @@
-// Estimates at a sample of the points, spread over all.
+// Quantiles of the residual variances of patches around a sample of the points, spread over all.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "point_deviation.h"
 
@@ -12,12 +12,13 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index  noisePlaces    = 500;
-constexpr Index  noiseNeighbors = 8;     // places that a point takes its noise from
-constexpr Index  noisePatches   = 300;   // a place takes its noise from,
-constexpr double noiseShare     = 0.04;  // or this share of all
-constexpr double minNoise       = 1e-10; // a length: of exact samples
-constexpr Index  fewPoints      = 1000;
+// By experiment on clouds whose noise and density vary tenfold (benchmarks/cleaning.py).
+constexpr Index  places         = 500;   // at which the deviation is measured
+constexpr Index  averagedPlaces = 8;     // around a point, whose geometric mean is its deviation
+constexpr Index  fewestPatches  = 300;   // around a place, whose quantile is its deviation,
+constexpr double leastShare     = 0.04;  // or this share of all patches
+constexpr double minDeviation   = 1e-10; // a length: of exact samples
+constexpr Index  fewPoints      = 1000;  // of a cloud in which few patches lie off the edges
 
 // A lower quantile, and how many standard deviations it is below the mean of a normal distribution.
 struct Quantile {
@@ -34,24 +35,25 @@ std::vector<double>
 pointDeviation(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
 {
 	if (blend.center.empty())
-		return std::vector<double>(cloud.size(), minNoise);
+		return std::vector<double>(cloud.size(), minDeviation);
 	const double             degrees  = std::max(1.0, quantile(blend.effectiveCount, 0.5) - 6.0);
 	const double             scatter  = 2.0 / (9.0 * degrees);
 	const auto               low      = cloud.size() < fewPoints ? tenth : quartile;
 	const double             expected = std::pow(1.0 - scatter - low.below * std::sqrt(scatter), 3);
 	const Eigen::Matrix3Xd   centers  = columnsOf(cloud.positions, blend.center);
 	const NeighborSearch     search(centers);
-	const std::vector<Index> places = order.sample(noisePlaces);
+	const std::vector<Index> at = order.sample(places);
 	const Index              count =
-		std::max(noisePatches, static_cast<Index>(noiseShare * double(blend.center.size())));
-	std::vector<double> noise(places.size());
-	parallelFor(static_cast<Index>(places.size()), {}, [&](Index k) {
+		std::max(fewestPatches, static_cast<Index>(leastShare * double(blend.center.size())));
+	std::vector<double> deviation(at.size());
+	parallelFor(static_cast<Index>(at.size()), {}, [&](Index k) {
 		std::vector<double> variance;
-		for (const Index c : search.nearest(cloud.positions.col(places[k]), count))
+		for (const Index c : search.nearest(cloud.positions.col(at[k]), count))
 			variance.push_back(blend.variance[c]);
-		noise[k] = std::max(minNoise, std::sqrt(quantileInPlace(variance, low.share) / expected));
+		deviation[k] =
+			std::max(minDeviation, std::sqrt(quantileInPlace(variance, low.share) / expected));
 	});
-	return spreadOver(cloud.positions, places, noise, noiseNeighbors, {});
+	return spreadOver(cloud.positions, at, deviation, averagedPlaces, {});
 }
 
 } // namespace curvature_lines

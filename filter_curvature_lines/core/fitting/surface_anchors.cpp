@@ -15,27 +15,34 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index countedAnchors = 40;
-
-// Residuals this much above that of a good fit, plus this many radii, do not come from noise.
-constexpr double      misfitRatio  = 0.15;
-constexpr double      misfitErrors = 2.0; // standard errors of a residual
-constexpr double      misfitFloor  = 0.004;
-constexpr double      minAgreement = 0.35; // share of the anchors within half a radius
-constexpr Index       minAnchors   = 30;
-constexpr double      linkStretch  = 1.15;
-constexpr double      faceRatio = 1.25; // noise levels that points may lie off the faces of an edge
-constexpr double      faceGain  = 0.9;  // and less than that of one surface,
-constexpr double      clearGain = 0.6;  // much less somewhere near
-constexpr std::size_t clearAgreement = 3;   // anchors
-constexpr double      faceReach      = 3.0; // radii
-constexpr Index sketchStride = 4; // anchors: a few of them tell whether there is an edge at all
-// weight over the largest one's: strays among the anchors have less
+// By experiment: sharp edges and the torus at 2 % noise, where false edges were most of the error
+// (benchmarks/curvature.py). docs/method.md, "Sharp faces", has the steps.
+constexpr Index countedAnchors = 40; // whose distances make the length of links
+// Times the distance to the eighth anchor: the anchors of a face hang together.
+constexpr double linkStretch = 1.15;
+// A residual is too large for noise when it exceeds that of a good fit by misfitRatio, or by misfitErrors standard errors
+// of a residual if that is more, and by this share of the radius. Of the anchors within half a radius a share of
+// minAgreement has to agree. With fewer than minAnchors anchors nothing is flagged.
+constexpr double misfitRatio  = 0.15;
+constexpr double misfitErrors = 2.0;
+constexpr double misfitFloor  = 0.004;
+constexpr double minAgreement = 0.35;
+constexpr Index  minAnchors   = 30;
+// An edge explains a misfit when its points lie on the faces within faceRatio quadricResiduals, and closer than faceGain
+// of the residual of one surface; and clearGain at clearAgreement anchors nearby.
+constexpr double      faceRatio      = 1.25;
+constexpr double      faceGain       = 0.9;
+constexpr double      clearGain      = 0.6;
+constexpr std::size_t clearAgreement = 3;
+constexpr double      faceReach      = 3.0; // radii from which anchors are continued to a misfit
+// Every fourth anchor is enough to find out whether there is an edge.
+constexpr Index sketchStride = 4;
+// Weight of a face over that of the largest one: a few wrong anchors have less.
 constexpr double leastFace = 0.15;
-// of the normal, along which a face is continued
+// Tangent of the turn of a normal up to which a face is continued: 27 degrees.
 constexpr double largestTurn  = 0.5;
-constexpr double spoiltRatio  = 2.0; // residual over the usual one, of a fit that outliers spoilt
-constexpr double smallestJump = 0.35;
+constexpr double spoiltRatio  = 2.0;  // residual over the usual one, of a fit that outliers spoilt
+constexpr double smallestJump = 0.35; // difference of normals that is an edge, at least: 20 degrees
 
 std::vector<Index>& scratchList()
 {
@@ -113,7 +120,7 @@ void SurfaceAnchors::flagMisfits()
 		high[a]            = m_elements[a].residual >
 		          ratio * m_scale.usualResidual + misfitFloor * m_scale.height.radius;
 	}
-	// An edge passes through the balls of many neighbours, chance through that of one.
+	// An edge passes through the balls of many neighbours; a residual that is large by chance is alone.
 	std::vector<Index> near;
 	for (Index a = 0; a < n; ++a) {
 		if (!high[a])
@@ -194,7 +201,7 @@ std::vector<SurfaceElement> SurfaceAnchors::continuedTo(
 	return continued;
 }
 
-// An edge leaves no doubt about many balls, chance about one.
+// Those with enough others nearby: an edge is clear in many balls, a false one in a single ball.
 std::vector<Index> SurfaceAnchors::agreeing(const std::vector<Index>& clear) const
 {
 	const Eigen::Matrix3Xd origins = m_origins(Eigen::all, clear);
@@ -217,7 +224,7 @@ void SurfaceAnchors::continueFaces(const PointSubsets& subsets, AnchorDetail det
 	for (Index a = 0; a < size(); ++a)
 		if (m_misfit[a])
 			misfits.push_back(a);
-	// Noise makes a bend look like an edge here and there; where one is, some balls leave no doubt.
+	// In single balls noise makes a bend look like an edge. A true edge is clear in some balls along it.
 	const std::vector<SurfaceElement> clear =
 		continuedTo(misfits, subsets, sketchStride, clearGain);
 	std::vector<Index> found, atEdges;

@@ -20,8 +20,8 @@ using Diffusion = CurvatureDrivenOptions::Diffusion;
 // h sqrt(xi), 1.4 bandwidths for xi = 2.
 constexpr double gaussianReach  = 2.0;
 constexpr double curvatureReach = 1.6;
-constexpr double settled =
-	1e-3; // spacings: diffusion ends when a step moves less (T06: a number of steps)
+// Spacings: diffusion ends when a step moves less (T06: a number of steps).
+constexpr double settled = 1e-3;
 
 } // namespace
 

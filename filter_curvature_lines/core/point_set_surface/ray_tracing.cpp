@@ -50,8 +50,8 @@ constexpr double behind  = 5.0;
 constexpr double shortest = 0.35, blend = 0.5, far = 0.4;
 // Radii by which march() looks beyond the spheres, because they leave gaps where points are uneven.
 constexpr double beyond = 0.5;
-constexpr double outline =
-	1e-3; // least cosine between the normal of a hit and the ray, so that it faces the eye
+// Least cosine between the normal of a hit and the ray, so that it faces the eye.
+constexpr double outline = 1e-3;
 // Pixels of a square whose rays share neighbourhoods, and of one whose rays share the search for spheres. Change no
 // result, only the time.
 constexpr int tile = 16, beam = 4;

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
-#include "crease_recovery.h"
 #include "scaffold.h"
 
 namespace curvature_lines {
@@ -118,8 +117,6 @@ TEST(Scaffold, HoldsTheCreasesAsEdges)
 	EXPECT_NEAR(length, 12.0, 1e-9);
 }
 
-// A square of 2 x 2 cells about a crease that no triangle has: one of its points is missing, the other two are
-// joined across it.
 // As wrinkles give: short lines that hover over the surface.
 TEST(Scaffold, LeavesOutCreasesThatWouldTearIt)
 {
@@ -138,44 +135,6 @@ TEST(Scaffold, LeavesOutCreasesThatWouldTearIt)
 	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
 	EXPECT_TRUE(scaffold.mesh.rims().empty());
 	EXPECT_EQ(scaffold.components, 1);
-}
-
-TEST(CreaseRecovery, PutsMissingPointsInAndFlipsWhatCrosses)
-{
-	Eigen::Matrix3Xd points(3, 9);
-	for (Index k = 0; k < 9; ++k)
-		points.col(k) << k % 3, k / 3, k % 3 == 1 ? 0.3 : 0.0;
-	// Crease 1, 4, 7; vertex 4 is unused: the triangles run from 3 to 5 and to the corners.
-	std::vector<Triangle> triangles = {
-		{0, 1, 3}, {1, 5, 3}, {1, 2, 5}, {3, 5, 7}, {3, 7, 6}, {5, 8, 7}};
-	recoverCreaseEdges(points, {{1, 4}, {4, 7}}, triangles);
-	std::vector<Index>          copies;
-	const std::vector<Triangle> kept = manifoldPart(triangles, 9, copies);
-	EXPECT_EQ(kept.size(), 8u);
-	EXPECT_TRUE(copies.empty());
-	const TriangleMesh mesh(points, kept);
-	EXPECT_GE(mesh.edgeBetween(1, 4), 0);
-	EXPECT_GE(mesh.edgeBetween(4, 7), 0);
-	EXPECT_EQ(mesh.eulerCharacteristic(), 1);
-	EXPECT_EQ(mesh.rims().size(), 1u);
-	for (Index t = 0; t < mesh.triangleCount(); ++t)
-		EXPECT_GT(mesh.areaVector(t).z(), 0.0);
-}
-
-// Two edges cross the missing one.
-TEST(CreaseRecovery, FlipsSeveralEdges)
-{
-	Eigen::Matrix3Xd points(3, 6);
-	points << 0, 1, 1, 2, 2, 3, //
-		0, -1, 1, -1, 1, 0,     //
-		0, 0, 0, 0, 0, 0;
-	std::vector<Triangle> triangles = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}};
-	recoverCreaseEdges(points, {{0, 5}}, triangles);
-	const TriangleMesh mesh(points, triangles);
-	EXPECT_GE(mesh.edgeBetween(0, 5), 0);
-	EXPECT_EQ(mesh.eulerCharacteristic(), 1);
-	for (Index t = 0; t < mesh.triangleCount(); ++t)
-		EXPECT_GT(mesh.areaVector(t).z(), 0.0);
 }
 
 TEST(Scaffold, KeepsLargeComponentsAndCountsSpecks)

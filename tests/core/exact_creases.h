@@ -78,7 +78,7 @@ inline CreasePoints boxCreases(const Eigen::Vector3d& half, double spacing, doub
 					std::swap(left, right);
 				addStraightCrease(points, from, to, left, right, spacing, random, deviation);
 			}
-	points.noise = deviation;
+	points.faceDeviation = deviation;
 	return points;
 }
 

@@ -17,13 +17,10 @@ LONGEST_FUNCTION = 90  # lines between the braces
 # Units without a test file of their own, with the one that tests them.
 PARTS_OF_A_STAGE = {
     "cleaning/outlier_groups": "cleaning/outlier_rejection",
-    "cleaning/outlier_voter": "cleaning/outlier_rejection",
     "cleaning/robust_outliers": "cleaning/outlier_rejection",
     "curvature/adaptive_scale": "curvature/adaptive_curvature",
-    "curvature/curvature_estimate": "pipeline/reconstruction",
     "curvature/direction_trust": "curvature/direction_smoothing",
     "curvature/feature_gate": "curvature/robust_curvature",
-    "curvature/operating_region": "curvature/robust_curvature",
     "fitting/anchor_fits": "curvature/adaptive_curvature",
     "fitting/blend_patch": "cleaning/robust_denoising",
     "fitting/face_projection": "cleaning/robust_denoising",

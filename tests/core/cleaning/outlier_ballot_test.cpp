@@ -13,13 +13,13 @@ using Eigen::Vector3d;
 OutlierVoter planeVoter(double radius = 1.0, double noise = 0.01)
 {
 	OutlierVoter voter;
-	voter.neighbors     = 60;
-	voter.surface       = SurfacePatch(Vector3d::Zero(), Vector3d::UnitZ(), radius);
-	voter.surface.scale = noise;
-	voter.surface.valid = true;
-	voter.spacing       = 0.1;
-	voter.noise         = noise;
-	voter.supportShape  = 4.0 * Eigen::Matrix2d::Identity(); // of an even disc of radius 1
+	voter.neighbors       = 60;
+	voter.surface         = SurfacePatch(Vector3d::Zero(), Vector3d::UnitZ(), radius);
+	voter.surface.scale   = noise;
+	voter.surface.valid   = true;
+	voter.spacing         = 0.1;
+	voter.heightDeviation = noise;
+	voter.supportShape    = 4.0 * Eigen::Matrix2d::Identity(); // of an even disc of radius 1
 	return voter;
 }
 
@@ -41,7 +41,7 @@ TEST(OutlierBallot, APointOnTheSurfaceHasNoVoteAgainstIt)
 	EXPECT_LT(verdict.deviation, 1.0);
 	EXPECT_NEAR(verdict.toSurface.z(), -0.005, 1e-9);
 	EXPECT_NEAR(verdict.spacing, 0.1, 1e-12);
-	EXPECT_NEAR(verdict.noise, planeVoter().heightError(), 1e-12);
+	EXPECT_NEAR(verdict.heightError, planeVoter().heightError(), 1e-12);
 }
 
 TEST(OutlierBallot, APointAboveTheSurfaceHasAllVotesAgainstIt)
@@ -98,7 +98,7 @@ TEST(OutlierBallot, ALonelyPointNeedsAProperVoter)
 	EXPECT_EQ(countVotes(beside, 1.0, 3.5).votes, 0);
 	Ballot       bent;
 	OutlierVoter edge = planeVoter();
-	edge.bent         = true;
+	edge.overEdge     = true;
 	addVote(bent, edge, Vector3d::Zero(), {0.2, 0.0, 0.0});
 	EXPECT_FALSE(bent.proper);
 	EXPECT_LT(bent.weight, 0.01 * known.weight);
@@ -110,7 +110,7 @@ TEST(OutlierBallot, AClearedBallotIsEmpty)
 	ballot.clear();
 	EXPECT_TRUE(ballot.votes.empty() && ballot.rim.empty() && !ballot.proper);
 	EXPECT_EQ(
-		ballot.weight + ballot.rimWeight + ballot.noise + ballot.spacing + ballot.nearness, 0.0);
+		ballot.weight + ballot.rimWeight + ballot.heightError + ballot.spacing + ballot.nearness, 0.0);
 }
 
 } // namespace

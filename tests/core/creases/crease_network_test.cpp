@@ -126,7 +126,7 @@ TEST(CreaseNetwork, MovesAndGrowsWithTheCloud)
 		p.right    = motion.rotation * p.right;
 		p.spacing *= 10.0;
 	}
-	moved.noise *= 10.0;
+	moved.faceDeviation *= 10.0;
 	const Creases here = networkOf(points);
 	CreaseTracing tracing(moved);
 	const Creases there =

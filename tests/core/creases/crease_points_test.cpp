@@ -49,7 +49,7 @@ TEST(CreasePoints, OfACubeLieOnItsEdges)
 {
 	const CreasePoints found = pointsOf("cube", 5000);
 	EXPECT_GT(found.points.size(), 1000u);
-	EXPECT_LT(found.noise, 1e-6);
+	EXPECT_LT(found.faceDeviation, 1e-6);
 	for (const CreasePoint& p : found.points) {
 		expectSound(p);
 		Vector3d sorted = p.position.cwiseAbs();

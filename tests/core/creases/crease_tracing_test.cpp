@@ -99,9 +99,9 @@ TEST(CreaseTracing, WidthGrowsWithSpacingAndNoise)
 	CreasePoint       sparse = at;
 	sparse.spacing *= 2.0;
 	EXPECT_DOUBLE_EQ(CreaseTracing(points).width(sparse), 2.0 * exact);
-	points.noise = spacing;
+	points.faceDeviation = spacing;
 	EXPECT_GT(CreaseTracing(points).width(at), exact);
-	EXPECT_EQ(CreaseTracing(points).noise(), spacing);
+	EXPECT_EQ(CreaseTracing(points).faceDeviation(), spacing);
 }
 
 TEST(CreasePoint, ReversedTwiceIsItself)

@@ -57,20 +57,27 @@ TEST(ControlNeighborhood, SumsAreThoseOfAllItsPoints)
 	EXPECT_LT((planes.square - plane.square).norm(), 1e-4 * h * h * expected.weight);
 }
 
-// All points within reach take part, where they are few enough.
-TEST(ControlNeighborhood, HoldsAllPointsWithinReach)
+// All points within reach take part, or the closest of them where they are many.
+TEST(ControlNeighborhood, HoldsTheClosestPointsWithinReach)
 {
 	const PointCloud          cloud = planeCloud(1500);
 	const NeighborSearch      search(cloud.positions);
 	const std::vector<double> spacing(cloud.size(), 1.0 / std::sqrt(1500.0));
 	const ControlPoints       control{cloud, search, spacing};
 	ControlNeighborhood       around;
-	for (const Vector3d& place :
-	     {Vector3d(0, 0, 0), Vector3d(0.2, 0.3, 0.01), Vector3d(-0.4, 0, 0)}) {
-		ASSERT_TRUE(around.gather(control, place, 2.0));
-		const auto inside = search.within(place, 2.0 * around.spacing());
-		EXPECT_EQ(around.size(), static_cast<int>(inside.size()));
-	}
+	for (const double reach : {2.0, 4.0})
+		for (const Vector3d& place :
+		     {Vector3d(0, 0, 0), Vector3d(0.2, 0.3, 0.01), Vector3d(-0.4, 0, 0)}) {
+			ASSERT_TRUE(around.gather(control, place, reach));
+			const auto inside = search.within(place, reach * around.spacing()); // by distance
+			ASSERT_LE(around.size(), static_cast<int>(inside.size()));
+			EXPECT_GE(around.size(), std::min<int>(inside.size(), int(EIGEN_PI * reach * reach)));
+			double farthest = 0.0;
+			for (int k = 0; k < around.size(); ++k)
+				farthest = std::max(farthest, (around.position(k) - place).norm());
+			const Index last = inside[around.size() - 1];
+			EXPECT_NEAR(farthest, (cloud.positions.col(last) - place).norm(), 1e-12);
+		}
 }
 
 TEST(ControlNeighborhood, KeepsOpposingSheetsApart)

@@ -1,0 +1,91 @@
+// The choice between the two estimates, and directions turned into other tangent planes.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "curvature_estimate.h"
+#include "exact_field.h"
+#include "triangulated_surfaces.h"
+
+namespace curvature_lines {
+namespace {
+
+using Eigen::Vector3d;
+
+test::ExactCloud exact(const char* surface, int points)
+{
+	samples::SampleRequest request;
+	request.surface = surface;
+	request.points  = points;
+	request.seed    = 8;
+	return test::exactCloud(request);
+}
+
+double relativeError(const Eigen::VectorXd& found, const Eigen::VectorXd& truth)
+{
+	std::vector<double> errors;
+	for (Index i = 0; i < static_cast<Index>(found.size()); ++i)
+		errors.push_back(std::abs(found[i] - truth[i]));
+	std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+	return errors[errors.size() / 2] / truth.cwiseAbs().mean();
+}
+
+TEST(CurvatureEstimate, BothScalesFindTheCurvatureOfATorus)
+{
+	const test::ExactCloud torus = exact("torus", 3000);
+	const NeighborSearch   search(torus.cloud.positions);
+	CurvatureOptions       options;
+	std::vector<double>    radii;
+	for (const ScaleMode mode : {ScaleMode::Adaptive, ScaleMode::Paper}) {
+		options.scaleMode          = mode;
+		const CurvatureField field = estimateCurvature(torus.cloud, search, torus.minimum, options);
+		EXPECT_LT(relativeError(field.k1, torus.field.k1), 0.02);
+		EXPECT_LT(relativeError(field.k2, torus.field.k2), 0.06);
+		radii.push_back(field.radius.mean());
+	}
+	EXPECT_NE(radii[0], radii[1]);
+}
+
+TEST(CurvatureEstimate, SurfaceNormalsAreAcrossTheDirections)
+{
+	const test::ExactCloud torus = exact("torus", 500);
+	EXPECT_LT((surfaceNormals(torus.field) - torus.cloud.normals).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(CurvatureEstimate, DirectionsTurnAsLittleAsPossible)
+{
+	test::ExactCloud torus = exact("torus", 500);
+	samples::Random  random(1, 0);
+	Eigen::Matrix3Xd tilted = torus.cloud.normals;
+	for (Index i = 0; i < torus.cloud.size(); ++i)
+		tilted.col(i) = (tilted.col(i) + 0.2 * random.normal3()).normalized();
+	CurvatureField field = torus.field;
+	makeTangent(tilted, field);
+	for (Index i = 0; i < torus.cloud.size(); ++i) {
+		const Vector3d n = tilted.col(i), d1 = field.d1.col(i), d2 = field.d2.col(i);
+		EXPECT_NEAR(d1.norm(), 1.0, 1e-12);
+		EXPECT_NEAR(d1.dot(n), 0.0, 1e-12);
+		EXPECT_LT((n.cross(d1) - d2).norm(), 1e-12);
+		// no tangent direction is closer to the old one
+		const Vector3d old = torus.field.d1.col(i);
+		EXPECT_NEAR(d1.dot(old), (old - n.dot(old) * n).norm(), 1e-9);
+	}
+	makeTangent(tilted, field); // again changes nothing
+	EXPECT_LT((surfaceNormals(field) - tilted).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(CurvatureEstimate, ADirectionAlongTheNormalIsReplaced)
+{
+	test::ExactCloud torus = exact("torus", 200);
+	CurvatureField   field = torus.field;
+	makeTangent(field.d1, field);
+	EXPECT_TRUE(field.d1.allFinite());
+	for (Index i = 0; i < field.size(); ++i) {
+		EXPECT_NEAR(field.d1.col(i).norm(), 1.0, 1e-12);
+		EXPECT_NEAR(field.d1.col(i).dot(torus.field.d1.col(i)), 0.0, 1e-9);
+	}
+}
+
+} // namespace
+} // namespace curvature_lines

@@ -19,8 +19,6 @@ PARTS_OF_A_STAGE = {
     "cleaning/outlier_groups": "cleaning/outlier_rejection",
     "cleaning/robust_outliers": "cleaning/outlier_rejection",
     "curvature/adaptive_scale": "curvature/adaptive_curvature",
-    "curvature/direction_trust": "curvature/direction_smoothing",
-    "curvature/feature_gate": "curvature/robust_curvature",
     "fitting/anchor_fits": "curvature/adaptive_curvature",
     "fitting/blend_patch": "cleaning/robust_denoising",
     "fitting/face_projection": "cleaning/robust_denoising",

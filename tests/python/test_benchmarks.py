@@ -24,6 +24,10 @@ MODULES = sorted(
 TABLES = sorted(file.stem for file in (FOLDER / "results").glob("*.md"))
 
 
+def test_there_are_modules_and_tables():
+    assert len(MODULES) > 20 and len(TABLES) > 5
+
+
 @pytest.mark.parametrize("module", MODULES)
 def test_every_module_loads(module):
     importlib.import_module(module)

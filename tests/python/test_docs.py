@@ -48,7 +48,8 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
     known |= {"debootstrap", "libgl1", "libopengl0"}
     for page in PAGES:
         prose = re.sub(r"^```.*?^```", "", (CHECKOUT / page).read_text(), flags=re.MULTILINE | re.DOTALL)
-        assert set(re.findall(r"`([a-z_]+\d?)`", prose)) <= known, page
+        named = set(re.findall(r"`([a-z_]+\d?)`", prose))
+        assert named and named <= known, page
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,9 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
 )
 def test_links_lead_somewhere(page):
     file = CHECKOUT / page
-    for target in re.findall(r"\]\(([^)#]+)\)", file.read_text()):
+    targets = re.findall(r"\]\(([^)#]+)\)", file.read_text())
+    assert targets
+    for target in targets:
         if "://" not in target:
             assert (file.parent / target).exists(), target
 

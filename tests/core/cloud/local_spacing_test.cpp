@@ -6,14 +6,23 @@
 
 #include "analytic_surfaces.h"
 #include "local_spacing.h"
+#include "triangulated_surfaces.h"
 
 namespace curvature_lines {
 namespace {
 
+// The cloud has to be in the order it is measured with.
 std::vector<double> spacingOf(const Eigen::Matrix3Xd& positions)
 {
-	const PointCloud cloud{positions, Eigen::Vector3d::UnitZ().replicate(1, positions.cols())};
-	return localSpacing(cloud, NeighborSearch(positions), SpatialOrder(positions));
+	const SpatialOrder order(positions);
+	const PointCloud   cloud{
+        order.arrange(positions), Eigen::Vector3d::UnitZ().replicate(1, positions.cols())};
+	const std::vector<double> arranged =
+		localSpacing(cloud, NeighborSearch(cloud.positions), SpatialOrder(cloud.positions));
+	std::vector<double> spacing(arranged.size());
+	for (std::size_t k = 0; k < arranged.size(); ++k)
+		spacing[order.source[k]] = arranged[k];
+	return spacing;
 }
 
 Eigen::Matrix3Xd unitSquare(int points)
@@ -44,6 +53,16 @@ TEST(LocalSpacing, GrowsWithTheCloud)
 	const auto             small = spacingOf(positions), large = spacingOf(50.0 * positions);
 	for (std::size_t i = 0; i < small.size(); ++i)
 		EXPECT_NEAR(large[i], 50.0 * small[i], 1e-6 * large[i]);
+}
+
+TEST(LocalSpacing, IsTheSameAfterARigidMotion)
+{
+	const Eigen::Matrix3Xd    positions = unitSquare(2000);
+	const test::RigidMotion   motion;
+	const std::vector<double> here  = spacingOf(positions),
+							  there = spacingOf(motion.ofPoints(positions));
+	for (std::size_t i = 0; i < here.size(); ++i)
+		EXPECT_NEAR(there[i], here[i], 1e-9);
 }
 
 TEST(LocalSpacing, FollowsAJumpInDensity)

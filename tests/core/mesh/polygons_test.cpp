@@ -17,7 +17,32 @@ Polygons pointsOnACircle(int count)
 		positions.col(k) << std::cos(a), std::sin(a), 0.0;
 		normals.col(k) = Vector3d::UnitZ();
 	}
-	return Polygons(HalfEdgeGraph(positions, normals, {}));
+	return Polygons(HalfEdgeGraph(positions, normals, {}), {});
+}
+
+TEST(Polygons, TakesTheFacesOfAGraph)
+{
+	// A triangle: the loop inside becomes a face of its vertices, in their order.
+	Eigen::Matrix3Xd positions(3, 3);
+	positions << 0, 1, 0, 0, 0, 1, 0, 0, 0;
+	std::vector<HalfEdgeGraph::Edge> edges(3);
+	for (Index k = 0; k < 3; ++k) {
+		const Index    to     = (k + 1) % 3;
+		const Vector3d along  = (positions.col(to) - positions.col(k)).normalized();
+		edges[k].from         = k;
+		edges[k].to           = to;
+		edges[k].tangentFrom  = along;
+		edges[k].tangentTo    = -along;
+		edges[k].middle       = 0.5 * (positions.col(to) + positions.col(k));
+		edges[k].middleNormal = Vector3d::UnitZ();
+	}
+	const HalfEdgeGraph graph(positions, Vector3d::UnitZ().replicate(1, 3), edges);
+	const PolygonMesh   mesh = Polygons(graph, {{0, 2, 4}}).mesh();
+	ASSERT_EQ(mesh.faceCount(), 1);
+	EXPECT_EQ(
+		std::vector<Index>(mesh.faces[0].begin(), mesh.faces[0].end()),
+		(std::vector<Index>{0, 1, 2}));
+	EXPECT_EQ(mesh.vertices, positions);
 }
 
 TEST(Polygons, APlainBorderIsOneFace)

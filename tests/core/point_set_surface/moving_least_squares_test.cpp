@@ -14,6 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 
+PointCloud inOrder(const PointCloud& points)
+{
+	const SpatialOrder order(points.positions);
+	return {order.arrange(points.positions), order.arrange(points.normals)};
+}
+
 struct Surface {
 	PointCloud                cloud;
 	NeighborSearch            search;
@@ -22,7 +28,7 @@ struct Surface {
 	MovingLeastSquaresSurface surface;
 
 	explicit Surface(const PointCloud& points) :
-			cloud(points), search(cloud.positions),
+			cloud(inOrder(points)), search(cloud.positions),
 			spacing(localSpacing(cloud, search, SpatialOrder(cloud.positions))),
 			control{cloud, search, spacing}, surface(control)
 	{

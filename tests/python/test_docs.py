@@ -52,16 +52,15 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         assert named and named <= known, page
 
 
-@pytest.mark.parametrize(
-    "page", ["README.md", "docs/guide.md", "docs/gallery.md", "docs/contributing.md", "docs/method.md"]
-)
-def test_links_lead_somewhere(page):
-    file = CHECKOUT / page
-    targets = re.findall(r"\]\(([^)#]+)\)", file.read_text())
-    assert targets
-    for target in targets:
-        if "://" not in target:
-            assert (file.parent / target).exists(), target
+def test_links_lead_somewhere():
+    followed = 0
+    for page in ["README.md", "docs/guide.md", "docs/gallery.md", "docs/contributing.md", "docs/method.md"]:
+        file = CHECKOUT / page
+        for target in re.findall(r"\]\(([^)#]+)\)", file.read_text()):
+            if "://" not in target:
+                assert (file.parent / target).exists(), f"{page}: {target}"
+                followed += 1
+    assert followed > 20
 
 
 def test_the_map_for_contributors_shows_rooms_and_units_as_they_are():

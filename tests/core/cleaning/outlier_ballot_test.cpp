@@ -110,7 +110,8 @@ TEST(OutlierBallot, AClearedBallotIsEmpty)
 	ballot.clear();
 	EXPECT_TRUE(ballot.votes.empty() && ballot.rim.empty() && !ballot.proper);
 	EXPECT_EQ(
-		ballot.weight + ballot.rimWeight + ballot.heightError + ballot.spacing + ballot.nearness, 0.0);
+		ballot.weight + ballot.rimWeight + ballot.heightError + ballot.spacing + ballot.nearness,
+		0.0);
 }
 
 } // namespace

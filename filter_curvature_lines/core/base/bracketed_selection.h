@@ -1,6 +1,6 @@
 // Selection by rank where about the right value is known beforehand, as from one step of a re-weighting to the
-// next. std::nth_element stumbles over every second comparison; here values are put aside without a branch until
-// few are left for it. The result is the same, whatever the guess.
+// next. In std::nth_element the processor mispredicts every second comparison; here values are sorted out without
+// a branch until few are left for it. The result is the same, whatever the guess.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

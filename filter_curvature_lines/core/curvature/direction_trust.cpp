@@ -132,15 +132,15 @@ directionTrust(const PointCloud& cloud, const CurvatureField& field, const Eigen
 	for (Index i = 0; i < n; ++i)
 		trust.weight[i] = weightOf(field, i, doubt[i]);
 
-	std::vector<Index> speakers;
+	std::vector<Index> reliable;
 	for (Index i = 0; i < n; ++i)
 		if (doubt[i] < trusted)
-			speakers.push_back(i);
-	if (speakers.empty())
+			reliable.push_back(i);
+	if (reliable.empty())
 		return trust;
-	Matrix3Xd positions(3, speakers.size());
-	parallelFor(static_cast<Index>(speakers.size()), {}, [&](Index s) {
-		const Index i        = speakers[s];
+	Matrix3Xd positions(3, reliable.size());
+	parallelFor(static_cast<Index>(reliable.size()), {}, [&](Index s) {
+		const Index i        = reliable[s];
 		positions.col(s)     = cloud.positions.col(i);
 		trust.turning.col(i) = turningAt(cloud, field, theta, trust.weight, i);
 	});
@@ -151,8 +151,8 @@ directionTrust(const PointCloud& cloud, const CurvatureField& field, const Eigen
 		const Vector3d normal = cloud.normals.col(i);
 		Vector3d       mean   = Vector3d::Zero();
 		for (const Index s : search.nearest(cloud.positions.col(i), trustedNearest))
-			if (cloud.normals.col(speakers[s]).dot(normal) > sameFace)
-				mean += trust.turning.col(speakers[s]) / trustedNearest;
+			if (cloud.normals.col(reliable[s]).dot(normal) > sameFace)
+				mean += trust.turning.col(reliable[s]) / trustedNearest;
 		trust.turning.col(i) = mean - mean.dot(normal) * normal;
 	});
 	return trust;

@@ -21,7 +21,7 @@ constexpr Index minRegion = 20;
 constexpr double minSupport = 0.25;
 constexpr double costRatio  = 0.85;
 constexpr double minConsent = 0.2;
-// of the summed weight; below, the corrected normal is a coin toss
+// of the summed weight; below, the neighbours do not agree about the normal
 constexpr double minAgreement = 0.2;
 
 struct Estimate {
@@ -233,7 +233,7 @@ void setPrincipalCurvatures(
 	// Tangent at the normal the cloud carries, even where the model was fitted at a better one.
 	field.d1.col(i) = tangential(TangentFrame(estimate.normal).toSpace(axis), TangentFrame(normal));
 	field.d2.col(i) = normal.cross(field.d1.col(i)).normalized();
-	// Normals are good to sigma; half of the points speak for each direction, over the region's radius.
+	// The error of a normal is sigma; half of the points determine each direction, over the radius of the region.
 	const double supporters = std::max<double>(estimate.neighbors.size(), 1.0);
 	field.error[i]          = estimate.sigma / (estimate.radius * std::sqrt(0.5 * supporters));
 }

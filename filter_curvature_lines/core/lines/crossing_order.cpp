@@ -122,7 +122,7 @@ bool removeTouches(const Passages& passages, std::vector<LineCrossing>& crossing
 	return kept < removed.size();
 }
 
-// A line that crosses itself at once only wavers, whatever else passes through the loop.
+// A line that crosses itself again at once does so by noise, whatever else passes through the loop.
 void removeCurls(
 	const LineNetwork&         lines,
 	const ArcLengths&          arcs,

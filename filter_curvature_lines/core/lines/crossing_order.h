@@ -13,7 +13,7 @@ sortAlongLines(const LineNetwork& lines, const std::vector<LineCrossing>& crossi
 
 // Corrections at crossings that are closer along their lines than reach[line vertex], repeated
 // while they find something. None changes V - E + F of lines that lie in a surface.
-// - A line that crosses itself at once only wavers: that crossing goes.
+// - A line that crosses itself again at once does so by noise: that crossing goes.
 // - Two lines that cross and cross back at once bound an empty digon: both crossings go.
 // - Three lines that cross pairwise bound a triangle. Each line sees the opposite corner on one
 // side, by

@@ -35,7 +35,7 @@ std::uint64_t hashOf(double x, double y, double z)
 }
 
 // Where two sheets come as near to each other as the points of one, the smallest ball may join them. By how much
-// the priority of such a triangle is put off: rims of thin blades are still made of some, but across an open gap
+// the priority of such a triangle is delayed: rims of thin blades are still made of some, but across an open gap
 // only the bottom of a groove is. (Cow, angel, armadillo: factors of 2 to 100 each.)
 constexpr double opposing = -0.3, acrossGap = 30.0, acrossBlade = 5.0;
 
@@ -63,7 +63,7 @@ struct SheetPriority {
 		for (int a = 1; a <= 3; ++a) {
 			const auto p = cell->vertex((facet + a) % 4);
 			const auto q = cell->vertex((facet + a % 3 + 1) % 4);
-			// CGAL helps itself with a vertex of no number when all points lie in a plane.
+			// When all points lie in a plane, CGAL adds a vertex that has no number.
 			const auto count = static_cast<std::size_t>(longest.size());
 			if (p->id() >= count || q->id() >= count)
 				return front.infinity();

@@ -31,7 +31,7 @@ double
 expectedVertices(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
 
 // The increase of the two phases (real: family 0, imaginary: family 1) along every edge, in lines, in the
-// frame at its start. A crease vertex, whose frame is tilted against the faces beside it, does not speak
+// frame at its start. A crease vertex, whose frame is tilted against the faces beside it, is left out
 // for edges that leave the crease.
 Eigen::VectorXcd
 expectedRise(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);

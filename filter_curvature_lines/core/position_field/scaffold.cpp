@@ -280,7 +280,8 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	std::vector<double> area(raw.vertexCount(), 0.0);
 	for (Index t = 0; t < raw.triangleCount(); ++t)
 		area[component[triangles[t][0]]] += raw.areaVector(t).norm();
-	// Closing the rim of a speck would make a pillow of it: the area keeps rims longer than small holes.
+	// A small component whose rim is filled as a hole would become a closed surface of two sheets. The least area is
+	// so large that its rim is longer than a small hole.
 	const double least =
 		std::max(options.leastArea * cell * cell, options.smallHole * distance * distance);
 	const double      largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
@@ -433,7 +434,7 @@ Scaffold buildScaffold(
 		if (flawsOf(next) < flawsOf(best))
 			best = std::move(next);
 	}
-	// The front can stumble over creases that are none, as between wrinkles; without them it need not.
+	// Curves between wrinkles are no creases, and the front can fail at them: attempts without the short ones, or all.
 	std::vector<FeatureLine> kept = creases;
 	double                   done = 0.6;
 	for (const double least : {shortCrease * distance, double(INFINITY)}) {

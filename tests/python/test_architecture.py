@@ -28,7 +28,6 @@ PARTS_OF_A_STAGE = {
     "fitting/point_subsets": "curvature/adaptive_curvature",
     "fitting/surface_anchors": "curvature/adaptive_curvature",
     "lines/line_arrangement": "lines/quad_mesh",
-    "lines/surface_flow": "lines/line_tracing",
     "mesh/graph_builder": "lines/quad_mesh",
     "position_field/position_field_lines": "position_field/position_field_mesh",
     "position_field/surface_graph": "position_field/surface_arrangement",
@@ -40,7 +39,6 @@ NOTHING_OF_THEIR_OWN = {
     "base/simd_block",
     "cleaning/outlier_result",
     "lines/line_crossing",
-    "point_set_surface/point_set_surface",
 }
 
 

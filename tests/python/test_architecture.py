@@ -27,8 +27,6 @@ PARTS_OF_A_STAGE = {
     "fitting/patch_blend": "cleaning/robust_denoising",
     "fitting/point_subsets": "curvature/adaptive_curvature",
     "fitting/surface_anchors": "curvature/adaptive_curvature",
-    "lines/line_arrangement": "lines/quad_mesh",
-    "mesh/graph_builder": "lines/quad_mesh",
     "position_field/position_field_lines": "position_field/position_field_mesh",
     "position_field/surface_graph": "position_field/surface_arrangement",
 }

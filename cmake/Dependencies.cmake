@@ -26,6 +26,7 @@ require_package(nanoflann libnanoflann-dev)
 set(CGAL_DISABLE_GMP ON)
 require_package(CGAL libcgal-dev)
 require_package(OpenMP g++)
+require_headers(xsimd xsimd/xsimd.hpp libxsimd-dev)
 require_headers(LBFGSpp LBFGSB.h liblbfgspp-dev)
 require_headers(dlib dlib/optimization.h libdlib-dev)
 # Debian's dlib is configured for BLAS. Its headers are used alone, and this include guard keeps BLAS out of them.

@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(
 	g++ cmake ninja-build python3-venv xz-utils
 	qtbase5-dev libqt5opengl5-dev libglew-dev
-	libeigen3-dev libnanoflann-dev libcgal-dev liblbfgspp-dev libdlib-dev
+	libeigen3-dev libnanoflann-dev libcgal-dev liblbfgspp-dev libdlib-dev libxsimd-dev
 	libgtest-dev libqhull-dev
 	# What pymeshlab needs to load, and pictures to be drawn without a screen.
 	libgl1 libopengl0 libglu1-mesa libegl1 libgl1-mesa-dri libx11-6 libxrender1

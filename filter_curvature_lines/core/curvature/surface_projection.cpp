@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "quantile.h"
-#include "simd_block.h"
+#include "sample_kernels.h"
 
 namespace curvature_lines {
 
@@ -69,27 +69,17 @@ struct SupportScratch {
 		kernel.resize(padded);
 		squaredDistance.resize(padded);
 	}
+	void measureFrom(const Vector3d& center)
+	{
+		const double* const columns[3] = {
+			position[0].data(), position[1].data(), position[2].data()};
+		squaredDistances(
+			columns,
+			center.data(),
+			static_cast<int>(squaredDistance.size()),
+			squaredDistance.data());
+	}
 };
-
-CURVATURE_LINES_AVX2_CLONE void squaredDistances(const double* center, SupportScratch& scratch)
-{
-	for (std::size_t k = 0; k < scratch.squaredDistance.size(); k += blockSize) {
-		const Block x                        = blockAt(&scratch.position[0][k]) - center[0];
-		const Block y                        = blockAt(&scratch.position[1][k]) - center[1];
-		const Block z                        = blockAt(&scratch.position[2][k]) - center[2];
-		blockAt(&scratch.squaredDistance[k]) = x * x + y * y + z * z;
-	}
-}
-
-CURVATURE_LINES_AVX2_CLONE void
-gaussianWeights(double reference, double sharpness, SupportScratch& scratch)
-{
-	for (std::size_t k = 0; k < scratch.kernel.size(); k += blockSize) {
-		Block weight = (blockAt(&scratch.squaredDistance[k]) - reference) * sharpness;
-		toExpOfNegative(weight);
-		blockAt(&scratch.kernel[k]) = weight * blockAt(&scratch.statistical[k]);
-	}
-}
 
 // The points with positive statistical weight at `closest`, and itself.
 class Support {
@@ -108,7 +98,7 @@ public:
 				m_scratch.add(cloud, row[k], weights[k]);
 		m_scratch.pad();
 		const Vector3d site = cloud.positions.col(closest);
-		squaredDistances(site.data(), m_scratch);
+		m_scratch.measureFrom(site);
 		double weight = 0.0, moment = 0.0;
 		for (std::size_t k = 0; k < m_scratch.points.size(); ++k) {
 			weight += m_scratch.statistical[k];
@@ -134,10 +124,16 @@ public:
 	void weigh(const Vector3d& center, double ratio)
 	{
 		const double sharpness = m_radius > 1e-100 ? ratio * ratio / (m_radius * m_radius) : 0.0;
-		squaredDistances(center.data(), m_scratch);
+		m_scratch.measureFrom(center);
 		const auto   first     = m_scratch.squaredDistance.begin();
 		const double reference = *std::min_element(first, first + m_scratch.points.size());
-		gaussianWeights(reference, sharpness, m_scratch);
+		gaussianWeights(
+			m_scratch.squaredDistance.data(),
+			m_scratch.statistical.data(),
+			reference,
+			sharpness,
+			static_cast<int>(m_scratch.kernel.size()),
+			m_scratch.kernel.data());
 	}
 
 	// visit(j, weight, squared distance to the centre of the weights)

@@ -10,54 +10,6 @@ namespace curvature_lines {
 
 namespace {
 
-template<int Degree, int Values>
-struct Moments {
-	double weighted[2 * Degree + 1][2 * Degree + 1]; // sum w x^a y^b
-	double products[Degree + 1][Degree + 1][Values]; // sum w x^a y^b value
-	double squares;                                  // sum w |value|^2
-};
-
-template<int Degree, int Values>
-CURVATURE_LINES_AVX2_CLONE void
-accumulate(const LocalSamples<Values>& samples, int padded, Moments<Degree, Values>& result)
-{
-	constexpr int highest                                  = 2 * Degree;
-	Block         weighted[highest + 1][highest + 1]       = {};
-	Block         products[Degree + 1][Degree + 1][Values] = {};
-	Block         squares                                  = {};
-	for (int s = 0; s < padded; s += blockSize) {
-		const Block x = blockAt(&samples.x[s]);
-		const Block y = blockAt(&samples.y[s]);
-		Block       v[Values];
-		Block       power = blockAt(&samples.weight[s]); // w x^a
-		for (int c = 0; c < Values; ++c) {
-			v[c] = blockAt(&samples.value[c][s]);
-			squares += power * v[c] * v[c];
-		}
-#pragma GCC unroll 16
-		for (int a = 0; a <= highest; ++a) {
-			Block both = power; // w x^a y^b
-#pragma GCC unroll 16
-			for (int b = 0; b <= highest - a; ++b) {
-				weighted[a][b] += both;
-				if (a + b <= Degree)
-					for (int c = 0; c < Values; ++c)
-						products[a][b][c] += both * v[c];
-				both *= y;
-			}
-			power *= x;
-		}
-	}
-	for (int a = 0; a <= highest; ++a)
-		for (int b = 0; a + b <= highest; ++b)
-			result.weighted[a][b] = sumOf(weighted[a][b]);
-	for (int a = 0; a <= Degree; ++a)
-		for (int b = 0; a + b <= Degree; ++b)
-			for (int c = 0; c < Values; ++c)
-				result.products[a][b][c] = sumOf(products[a][b][c]);
-	result.squares = sumOf(squares);
-}
-
 // Powers of x and y of every monomial.
 template<int Degree>
 constexpr std::array<std::array<int, 2>, monomialCount(Degree)> exponents()
@@ -76,10 +28,10 @@ constexpr std::array<std::array<int, 2>, monomialCount(Degree)> exponents()
 template<int Degree, int Values>
 PolynomialFit<Degree, Values> fitPolynomial(LocalSamples<Values>& samples)
 {
-	constexpr int           count    = monomialCount(Degree);
-	constexpr auto          exponent = exponents<Degree>();
-	Moments<Degree, Values> moments;
-	accumulate<Degree, Values>(samples, samples.pad(), moments);
+	constexpr int  count    = monomialCount(Degree);
+	constexpr auto exponent = exponents<Degree>();
+	samples.pad();
+	const Moments<Degree, Values> moments = momentsOf<Degree, Values>(samples.columns());
 
 	PolynomialFit<Degree, Values>        fit;
 	Eigen::Matrix<double, count, Values> rhs;

@@ -7,15 +7,9 @@
 
 #include <Eigen/Core>
 
-#include "simd_block.h"
+#include "sample_kernels.h"
 
 namespace curvature_lines {
-
-// Monomials x^a y^b of the whole degree, in the order 1, x, y, x^2, x y, y^2, x^3, ...
-constexpr int monomialCount(int degree)
-{
-	return (degree + 1) * (degree + 2) / 2;
-}
 
 // Points in the tangent plane, weights and values, one array per component so that sums vectorise. Lengths
 // are best in units of the neighbourhood's radius. Kept by the caller as the scratch of one thread.
@@ -51,6 +45,14 @@ public:
 		for (int c = 0; c < Values; ++c)
 			value[c][m_size] = values[c];
 		++m_size;
+	}
+	// The arrays as the kernels take them.
+	SampleColumns<Values> columns()
+	{
+		SampleColumns<Values> result{x.data(), y.data(), weight.data(), {}, m_size};
+		for (int c = 0; c < Values; ++c)
+			result.value[c] = value[c].data();
+		return result;
 	}
 	// Samples of weight 0 up to a whole number of blocks; returns the padded size.
 	int pad()

@@ -37,162 +37,16 @@ Eigen::Matrix3d shapeOfHeight(
 	return dual.transpose() * (-hessian / w) * dual;
 }
 
-// The same kernel for a block of samples.
-inline void kernelOf(const Block& t2, Block& weight)
+FrameColumns columnsOf(const TangentFrame& frame, const Eigen::Vector3d& origin)
 {
-	const Block s    = 1.0 - t2;
-	const Block zero = {};
-	weight           = s > 0.0 ? s * s : zero;
-}
-
-// sum w (1, d, n, d d^T) over the points whose normals do not oppose `side`; d d^T by its lower triangle.
-struct PlaneMoments {
-	double weight = 0.0;
-	double offset[3], normal[3], square[6];
-};
-
-CURVATURE_LINES_AVX2_CLONE void
-sumUp(const BallPoints& ball, const double* side, PlaneMoments& moments)
-{
-	const Block zero   = {};
-	Block       weight = {}, offset[3] = {}, normal[3] = {}, square[6] = {};
-	for (int s = 0; s < ball.size; s += blockSize) {
-		const Block d[3] = {
-			blockAt(&ball.position[0][s]),
-			blockAt(&ball.position[1][s]),
-			blockAt(&ball.position[2][s])};
-		const Block n[3] = {
-			blockAt(&ball.normal[0][s]), blockAt(&ball.normal[1][s]), blockAt(&ball.normal[2][s])};
-		const Block along = n[0] * side[0] + n[1] * side[1] + n[2] * side[2];
-		Block       w;
-		kernelOf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], w);
-		w = along < 0.0 ? zero : w;
-		weight += w;
-		for (int r = 0, m = 0; r < 3; ++r) {
-			const Block wd = w * d[r];
-			offset[r] += wd;
-			normal[r] += w * n[r];
-			for (int c = 0; c <= r; ++c, ++m)
-				square[m] += wd * d[c];
-		}
+	FrameColumns result;
+	for (int c = 0; c < 3; ++c) {
+		result.origin[c] = origin[c];
+		result.u[c]      = frame.u[c];
+		result.v[c]      = frame.v[c];
+		result.n[c]      = frame.n[c];
 	}
-	moments.weight = sumOf(weight);
-	for (int r = 0; r < 3; ++r) {
-		moments.offset[r] = sumOf(offset[r]);
-		moments.normal[r] = sumOf(normal[r]);
-	}
-	for (int m = 0; m < 6; ++m)
-		moments.square[m] = sumOf(square[m]);
-}
-
-// The points of a ball in a tangent frame at `origin` (in radii from the centre).
-struct LocalFrame {
-	double origin[3], u[3], v[3], n[3];
-
-	LocalFrame(const TangentFrame& frame, const Eigen::Vector3d& center)
-	{
-		for (int c = 0; c < 3; ++c) {
-			origin[c] = center[c];
-			u[c]      = frame.u[c];
-			v[c]      = frame.v[c];
-			n[c]      = frame.n[c];
-		}
-	}
-};
-
-// Samples of the heights over the plane of `frame`; of weight 0 where the normal opposes. Returns how many
-// have a weight.
-CURVATURE_LINES_AVX2_CLONE int toHeights(
-	const BallPoints& ball, const LocalFrame& frame, const double* robust, LocalSamples<1>& samples)
-{
-	const Block zero = {}, one = zero + 1.0;
-	Block       used = {};
-	for (int s = 0; s < ball.size; s += blockSize) {
-		const Block x     = blockAt(&ball.position[0][s]) - frame.origin[0];
-		const Block y     = blockAt(&ball.position[1][s]) - frame.origin[1];
-		const Block z     = blockAt(&ball.position[2][s]) - frame.origin[2];
-		const Block along = blockAt(&ball.normal[0][s]) * frame.n[0] +
-		                    blockAt(&ball.normal[1][s]) * frame.n[1] +
-		                    blockAt(&ball.normal[2][s]) * frame.n[2];
-		Block w;
-		kernelOf(x * x + y * y + z * z, w);
-		w = along < 0.0 ? zero : w * blockAt(&robust[s]);
-		used += w > 0.0 ? one : zero;
-		blockAt(&samples.weight[s])   = w;
-		blockAt(&samples.x[s])        = x * frame.u[0] + y * frame.u[1] + z * frame.u[2];
-		blockAt(&samples.y[s])        = x * frame.v[0] + y * frame.v[1] + z * frame.v[2];
-		blockAt(&samples.value[0][s]) = x * frame.n[0] + y * frame.n[1] + z * frame.n[2];
-	}
-	return int(sumOf(used));
-}
-
-// Samples of the normals in `frame`, likewise.
-CURVATURE_LINES_AVX2_CLONE int
-toNormals(const BallPoints& ball, const LocalFrame& frame, LocalSamples<3>& samples)
-{
-	const Block zero = {}, one = zero + 1.0;
-	Block       used = {};
-	for (int s = 0; s < ball.size; s += blockSize) {
-		const Block x     = blockAt(&ball.position[0][s]);
-		const Block y     = blockAt(&ball.position[1][s]);
-		const Block z     = blockAt(&ball.position[2][s]);
-		const Block nx    = blockAt(&ball.normal[0][s]);
-		const Block ny    = blockAt(&ball.normal[1][s]);
-		const Block nz    = blockAt(&ball.normal[2][s]);
-		const Block along = nx * frame.n[0] + ny * frame.n[1] + nz * frame.n[2];
-		Block       w;
-		kernelOf(x * x + y * y + z * z, w);
-		w = along < 0.0 ? zero : w;
-		used += w > 0.0 ? one : zero;
-		blockAt(&samples.weight[s])   = w;
-		blockAt(&samples.x[s])        = x * frame.u[0] + y * frame.u[1] + z * frame.u[2];
-		blockAt(&samples.y[s])        = x * frame.v[0] + y * frame.v[1] + z * frame.v[2];
-		blockAt(&samples.value[0][s]) = nx * frame.u[0] + ny * frame.u[1] + nz * frame.u[2];
-		blockAt(&samples.value[1][s]) = nx * frame.v[0] + ny * frame.v[1] + nz * frame.v[2];
-		blockAt(&samples.value[2][s]) = along;
-	}
-	return int(sumOf(used));
-}
-
-// Distances of the samples from the polynomials (one column of coefficients per value), 0 without weight;
-// returns the largest.
-template<int Degree, int Values>
-CURVATURE_LINES_AVX2_CLONE double
-distances(const LocalSamples<Values>& samples, const double* coefficients, double* result)
-{
-	constexpr int count   = monomialCount(Degree);
-	const Block   zero    = {};
-	Block         largest = {};
-	for (int s = 0; s < samples.size(); s += blockSize) {
-		const Block x = blockAt(&samples.x[s]);
-		const Block y = blockAt(&samples.y[s]);
-		Block       left[Values];
-		for (int v = 0; v < Values; ++v)
-			left[v] = blockAt(&samples.value[v][s]);
-		Block power = zero + 1.0; // x^a
-#pragma GCC unroll 8
-		for (int a = 0; a <= Degree; ++a) {
-			Block both = power;
-#pragma GCC unroll 8
-			for (int b = 0; b <= Degree - a; ++b) {
-				const double* c = coefficients + (a + b) * (a + b + 1) / 2 + b;
-#pragma GCC unroll 4
-				for (int v = 0; v < Values; ++v)
-					left[v] -= c[v * count] * both;
-				both *= y;
-			}
-			power *= x;
-		}
-		Block squared = zero;
-		for (int v = 0; v < Values; ++v)
-			squared += left[v] * left[v];
-		squared             = blockAt(&samples.weight[s]) > 0.0 ? squared : zero;
-		largest             = squared > largest ? squared : largest;
-		blockAt(&result[s]) = squared;
-	}
-	for (int s = 0; s < samples.size(); ++s)
-		result[s] = std::sqrt(result[s]);
-	return std::sqrt(std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3])));
+	return result;
 }
 
 } // namespace
@@ -236,9 +90,8 @@ void LocalSurfaceFitter::takeBall(
 
 BallPlane LocalSurfaceFitter::plane(const Eigen::Vector3d& normal) const
 {
-	PlaneMoments moments;
-	sumUp(m_ball, normal.data(), moments);
-	BallPlane plane;
+	const PlaneMoments moments = planeMomentsOf(m_ball.columns(), normal.data());
+	BallPlane          plane;
 	if (!(moments.weight > 0.0))
 		return plane;
 	const Eigen::Vector3d mean = Eigen::Vector3d::Map(moments.offset) / moments.weight;
@@ -280,17 +133,17 @@ bool LocalSurfaceFitter::heightStep(bool lookForOutliers, SurfaceElement& elemen
 {
 	const double       radius = m_ball.radius;
 	const TangentFrame frame(element.normal);
-	const LocalFrame   local(frame, (element.position - m_ball.center) / radius);
+	const FrameColumns local = columnsOf(frame, (element.position - m_ball.center) / radius);
 	m_heights.resize(m_ball.size);
-	const int used = toHeights(m_ball, local, m_robust.data(), m_heights);
+	const int used = toHeights(m_ball.columns(), local, m_robust.data(), m_heights.columns());
 	if (used < monomialCount(Degree) + spareSamples)
 		return false;
 	auto fit = fitPolynomial<Degree, 1>(m_heights);
 	if (!fit.valid)
 		return false;
 	if (lookForOutliers) {
-		const double largest =
-			distances<Degree, 1>(m_heights, fit.coefficients.data(), m_residuals.data());
+		const double largest = distancesFrom<Degree, 1>(
+			fit.coefficients.data(), m_heights.columns(), m_residuals.data());
 		const double rms = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
 		if (largest > suspicious * rms) {
 			reweight(rms, m_heights);
@@ -342,15 +195,16 @@ bool LocalSurfaceFitter::normalStep(bool lookForOutliers, SurfaceElement& elemen
 	const TangentFrame frame(element.normal);
 	const double       scale = 1.0 / m_ball.radius;
 	m_normals.resize(m_ball.size);
-	const LocalFrame local(frame, Eigen::Vector3d::Zero());
-	if (toNormals(m_ball, local, m_normals) < monomialCount(Degree) + spareSamples)
+	const FrameColumns local = columnsOf(frame, Eigen::Vector3d::Zero());
+	if (toNormals(m_ball.columns(), local, m_normals.columns()) <
+	    monomialCount(Degree) + spareSamples)
 		return false;
 	auto fit = fitPolynomial<Degree, 3>(m_normals);
 	if (!fit.valid)
 		return false;
 	if (lookForOutliers) {
-		const double largest =
-			distances<Degree, 3>(m_normals, fit.coefficients.data(), m_residuals.data());
+		const double largest = distancesFrom<Degree, 3>(
+			fit.coefficients.data(), m_normals.columns(), m_residuals.data());
 		const double rms = std::sqrt(fit.squaredResidual / fit.sumOfWeights);
 		if (largest > suspicious * rms) {
 			std::fill_n(m_robust.begin(), m_normals.size(), 1.0);

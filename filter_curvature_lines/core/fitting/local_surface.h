@@ -35,6 +35,14 @@ struct BallPoints {
 	double              radius = 1.0;
 	int                 size   = 0;
 	std::vector<double> position[3], normal[3];
+
+	OrientedColumns columns() const
+	{
+		return {
+			{position[0].data(), position[1].data(), position[2].data()},
+			{normal[0].data(), normal[1].data(), normal[2].data()},
+			size};
+	}
 };
 
 struct BallPlane {

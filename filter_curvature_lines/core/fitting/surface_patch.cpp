@@ -10,7 +10,6 @@
 #include <Eigen/Dense>
 
 #include "bracketed_selection.h"
-#include "simd_block.h"
 
 namespace curvature_lines {
 
@@ -32,11 +31,6 @@ constexpr double cutoff             = 4.5;
 constexpr int    firstIterations    = 5;
 constexpr int    tiltedIterations   = 6;
 
-constexpr int monomialIndex(int a, int b)
-{
-	return (a + b) * (a + b + 1) / 2 + b;
-}
-
 // phi^T A^-1 phi collected by powers: a sixth of the products of the quadratic form.
 template<class Matrix>
 auto leveragePolynomial(const Matrix& inverse)
@@ -48,42 +42,6 @@ auto leveragePolynomial(const Matrix& inverse)
 			c[monomialIndex(exponent[r][0] + exponent[s][0], exponent[r][1] + exponent[s][1])] +=
 				inverse(r, s);
 	return c;
-}
-
-// Over the samples: sum W r^2, sum W^2 leverage, sum W^2.
-struct PatchSums {
-	double squares, lost, squaredWeights;
-};
-
-CURVATURE_LINES_AVX2_CLONE PatchSums sumUp(const SurfacePatch& patch, LocalSamples<1>& samples)
-{
-	const double* const a       = patch.coefficients.data();
-	const double* const h       = patch.leverageCoefficients.data();
-	const double        ir      = 1.0 / patch.radius;
-	const int           n       = samples.pad();
-	const Block         zero    = {};
-	Block               squares = zero, lost = zero, squaredWeights = zero;
-	for (int s = 0; s < n; s += blockSize) {
-		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]),
-					w      = blockAt(&samples.weight[s]);
-		const Block slopeX = (a[1] + 2.0 * a[3] * x + a[4] * y) * ir;
-		const Block slopeY = (a[2] + a[4] * x + 2.0 * a[5] * y) * ir;
-		const Block off = blockAt(&samples.value[0][s]) - a[0] - x * (a[1] + a[3] * x + a[4] * y) -
-		                  y * (a[2] + a[5] * y);
-		Block leverage = zero;
-#pragma GCC unroll 8
-		for (int i = 4; i >= 0; --i) {
-			Block inner = zero;
-#pragma GCC unroll 8
-			for (int j = 4 - i; j >= 0; --j)
-				inner = inner * y + h[monomialIndex(i, j)];
-			leverage = leverage * x + inner;
-		}
-		squares += w * off * off / (1.0 + slopeX * slopeX + slopeY * slopeY);
-		lost += w * w * leverage;
-		squaredWeights += w * w;
-	}
-	return {sumOf(squares), sumOf(lost), sumOf(squaredWeights)};
 }
 
 double quantile(std::vector<double>& values, int n, double share)
@@ -314,8 +272,12 @@ bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples)
 	regular.diagonal() *= 1.0 + 1e-10; // as in the fit
 	patch.leverageCoefficients =
 		leveragePolynomial(regular.ldlt().solve(decltype(regular)::Identity()).eval());
-	const PatchSums sums    = sumUp(patch, samples);
-	const double    degrees = fit.sumOfWeights - sums.lost;
+	const PatchSums sums = patchSumsOf(
+		patch.coefficients.data(),
+		patch.leverageCoefficients.data(),
+		patch.radius,
+		samples.columns());
+	const double degrees = fit.sumOfWeights - sums.lost;
 	// Samples that a quadric goes through exactly tell nothing about the noise.
 	patch.scale = degrees > 1e-6 * fit.sumOfWeights ? std::sqrt(sums.squares / degrees) : 0.0;
 	patch.effectiveCount = fit.sumOfWeights * fit.sumOfWeights / sums.squaredWeights;

@@ -1,9 +1,11 @@
-// Gathering of control points and Gaussian sums over them, four at a time.
+// Gathering of control points and Gaussian sums over them.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "control_neighborhood.h"
 
 #include <algorithm>
 #include <limits>
+
+#include "gaussian_sums.h"
 
 namespace curvature_lines {
 
@@ -22,90 +24,6 @@ constexpr double farAway = 1e30; // coordinate of the points that fill up a bloc
 // Cosine between normals below which points are on another sheet, 110 degrees: faces at a right angle are one sheet,
 // those of a thin plate are two.
 constexpr double opposing = -0.34;
-
-// Offsets of four points from a place, and their Gaussian weights.
-struct Offsets {
-	Block x, y, z, weight;
-};
-
-inline void offsetsAt(
-	const double* rows, int padded, int s, const Vector3d& place, double sharpness, Offsets& d)
-{
-	d.x      = blockAt(rows + s) - place.x();
-	d.y      = blockAt(rows + padded + s) - place.y();
-	d.z      = blockAt(rows + 2 * padded + s) - place.z();
-	d.weight = sharpness * (d.x * d.x + d.y * d.y + d.z * d.z);
-	toExpOfNegative(d.weight);
-}
-
-CURVATURE_LINES_AVX2_CLONE void
-addUp(const double* rows, int padded, const Vector3d& place, double sharpness, NormalSums& sums)
-{
-	Block weight = {}, plane = {}, offset[3] = {}, normal[3] = {};
-	for (int s = 0; s < padded; s += blockSize) {
-		Offsets d;
-		offsetsAt(rows, padded, s, place, sharpness, d);
-		const Block nx = blockAt(rows + 3 * padded + s), ny = blockAt(rows + 4 * padded + s),
-					nz = blockAt(rows + 5 * padded + s);
-		const Block w  = d.weight;
-		weight += w;
-		offset[0] += w * d.x;
-		offset[1] += w * d.y;
-		offset[2] += w * d.z;
-		normal[0] += w * nx;
-		normal[1] += w * ny;
-		normal[2] += w * nz;
-		plane += w * (d.x * nx + d.y * ny + d.z * nz);
-	}
-	sums.weight = sumOf(weight);
-	sums.offset = {sumOf(offset[0]), sumOf(offset[1]), sumOf(offset[2])};
-	sums.normal = {sumOf(normal[0]), sumOf(normal[1]), sumOf(normal[2])};
-	sums.plane  = sumOf(plane);
-}
-
-CURVATURE_LINES_AVX2_CLONE void
-addUp(const double* rows, int padded, const Vector3d& place, double sharpness, PlaneSums& sums)
-{
-	Block weight = {}, offset[3] = {}, xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
-	for (int s = 0; s < padded; s += blockSize) {
-		Offsets d;
-		offsetsAt(rows, padded, s, place, sharpness, d);
-		const Block wx = d.weight * d.x, wy = d.weight * d.y, wz = d.weight * d.z;
-		weight += d.weight;
-		offset[0] += wx;
-		offset[1] += wy;
-		offset[2] += wz;
-		xx += wx * d.x;
-		xy += wx * d.y;
-		xz += wx * d.z;
-		yy += wy * d.y;
-		yz += wy * d.z;
-		zz += wz * d.z;
-	}
-	sums.weight      = sumOf(weight);
-	sums.offset      = {sumOf(offset[0]), sumOf(offset[1]), sumOf(offset[2])};
-	const double sxy = sumOf(xy), sxz = sumOf(xz), syz = sumOf(yz);
-	sums.square << sumOf(xx), sxy, sxz, sxy, sumOf(yy), syz, sxz, syz, sumOf(zz);
-}
-
-CURVATURE_LINES_AVX2_CLONE void project(
-	const double*       rows,
-	int                 padded,
-	const Vector3d&     place,
-	const TangentFrame& frame,
-	double              h,
-	LocalSamples<1>&    samples)
-{
-	const Vector3d u = frame.u / h, v = frame.v / h, n = frame.n / h;
-	for (int s = 0; s < padded; s += blockSize) {
-		Offsets d;
-		offsetsAt(rows, padded, s, place, 1.0 / (h * h), d);
-		blockAt(&samples.x[s])        = d.x * u.x() + d.y * u.y() + d.z * u.z();
-		blockAt(&samples.y[s])        = d.x * v.x() + d.y * v.y() + d.z * v.z();
-		blockAt(&samples.value[0][s]) = d.x * n.x() + d.y * n.y() + d.z * n.z();
-		blockAt(&samples.weight[s])   = d.weight;
-	}
-}
 
 } // namespace
 
@@ -178,16 +96,19 @@ bool ControlNeighborhood::gather(
 
 NormalSums ControlNeighborhood::normalSums(const Vector3d& place, double h) const
 {
-	NormalSums sums;
-	addUp(m_rows.data(), m_padded, place, 1.0 / (h * h), sums);
-	return sums;
+	const GaussianNormalSums sums =
+		gaussianNormalSums({m_rows.data(), m_padded}, place.data(), 1.0 / (h * h));
+	return {sums.weight, Vector3d(sums.offset), Vector3d(sums.normal), sums.plane};
 }
 
 PlaneSums ControlNeighborhood::planeSums(const Vector3d& place, double h) const
 {
-	PlaneSums sums;
-	addUp(m_rows.data(), m_padded, place, 1.0 / (h * h), sums);
-	return sums;
+	const GaussianPlaneSums sums =
+		gaussianPlaneSums({m_rows.data(), m_padded}, place.data(), 1.0 / (h * h));
+	const double (&m)[6] = sums.square;
+	Eigen::Matrix3d square;
+	square << m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[5];
+	return {sums.weight, Vector3d(sums.offset), square};
 }
 
 double ControlNeighborhood::pastEdge(const Vector3d& place, const Vector3d& normal) const
@@ -208,7 +129,14 @@ void ControlNeighborhood::heights(
 	const Vector3d& place, const TangentFrame& frame, double h, LocalSamples<1>& samples) const
 {
 	samples.resize(m_padded);
-	project(m_rows.data(), m_padded, place, frame, h, samples);
+	FrameColumns columns;
+	for (int c = 0; c < 3; ++c) {
+		columns.origin[c] = place[c];
+		columns.u[c]      = frame.u[c] / h;
+		columns.v[c]      = frame.v[c] / h;
+		columns.n[c]      = frame.n[c] / h;
+	}
+	toGaussianSamples({m_rows.data(), m_padded}, columns, 1.0 / (h * h), samples.columns());
 	samples.resize(m_size);
 }
 

@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include "gaussian_sums.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -15,56 +17,12 @@ namespace {
 constexpr double smallestShare    = 1e-3;
 constexpr double fewestDirections = 4.0; // points: one more than unknowns
 
-// Of rows (1, cos 2 phi, sin 2 phi).
-struct EulerSums {
-	Eigen::Matrix3d normal;        // sum w row row^T
-	Eigen::Matrix3d spread;        // sum w^2 row row^T: for the error
-	Eigen::Vector3d rhs;           // sum w k row
-	double          squares = 0.0; // sum w k^2
-	double          count   = 0.0; // of weights that are not 0
-};
-
-CURVATURE_LINES_AVX2_CLONE void addUp(const LocalSamples<1>& samples, int padded, EulerSums& sums)
+// sum w row row^T of rows (1, cos 2 phi, sin 2 phi), from sum w (1, c, s, c c, c s): s s = 1 - c c.
+Eigen::Matrix3d symmetric(const double (&m)[5])
 {
-	Block n1 = {}, nc = {}, ns = {}, ncc = {}, ncs = {}, q1 = {}, qc = {}, qs = {}, qcc = {},
-		  qcs = {};
-	Block r1 = {}, rc = {}, rs = {}, squares = {}, count = {};
-	for (int s = 0; s < padded; s += blockSize) {
-		const Block x = blockAt(&samples.x[s]), y = blockAt(&samples.y[s]),
-					z  = blockAt(&samples.value[0][s]);
-		const Block xx = x * x, yy = y * y, square = xx + yy;
-		const Block w       = square > 0.0 ? Block(blockAt(&samples.weight[s])) : Block{};
-		const Block inverse = 1.0 / (square > 0.0 ? square : square + 1.0);
-		const Block c = (xx - yy) * inverse, si = 2.0 * x * y * inverse; // of twice the angle
-		// T06 eq. 6, the sign ours
-		const Block k  = -2.0 * z / (square > 0.0 ? square + z * z : square + 1.0);
-		const Block wc = w * c, ws = w * si, wk = w * k, ww = w * w, wwc = ww * c;
-		n1 += w;
-		nc += wc;
-		ns += ws;
-		ncc += wc * c;
-		ncs += wc * si;
-		q1 += ww;
-		qc += wwc;
-		qs += ww * si;
-		qcc += wwc * c;
-		qcs += wwc * si;
-		r1 += wk;
-		rc += wk * c;
-		rs += wk * si;
-		squares += wk * k;
-		count += w > 0.0 ? Block{} + 1.0 : Block{};
-	}
-	const auto symmetric = [](double one, double c, double s, double cc, double cs) {
-		Eigen::Matrix3d m;
-		m << one, c, s, c, cc, cs, s, cs, one - cc; // cos^2 + sin^2 = 1
-		return m;
-	};
-	sums.normal  = symmetric(sumOf(n1), sumOf(nc), sumOf(ns), sumOf(ncc), sumOf(ncs));
-	sums.spread  = symmetric(sumOf(q1), sumOf(qc), sumOf(qs), sumOf(qcc), sumOf(qcs));
-	sums.rhs     = {sumOf(r1), sumOf(rc), sumOf(rs)};
-	sums.squares = sumOf(squares);
-	sums.count   = sumOf(count);
+	Eigen::Matrix3d result;
+	result << m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[0] - m[3];
+	return result;
 }
 
 } // namespace
@@ -81,20 +39,21 @@ double gaussianWeight(double x, double h)
 
 EulerFit fitEuler(LocalSamples<1>& samples)
 {
-	EulerSums sums;
-	addUp(samples, samples.pad(), sums);
+	samples.pad();
+	const EulerMoments    sums   = eulerMomentsOf(samples.columns());
+	const Eigen::Matrix3d normal = symmetric(sums.normal), spread = symmetric(sums.spread);
 
 	EulerFit        fit;
 	Eigen::Matrix3d inverse;
 	// Relative to the sum of the weights, the determinant of well spread directions is 1/4.
-	const double total   = sums.normal(0, 0);
+	const double total   = normal(0, 0);
 	bool         regular = sums.count >= fewestDirections && total > 0.0;
 	if (regular)
-		(sums.normal / total).eval().computeInverseWithCheck(inverse, regular, 1e-6);
+		(normal / total).eval().computeInverseWithCheck(inverse, regular, 1e-6);
 	if (!regular)
 		return fit;
 	inverse /= total;
-	const Eigen::Vector3d v    = inverse * sums.rhs;
+	const Eigen::Vector3d v    = inverse * Eigen::Vector3d::Map(sums.rhs);
 	const double          half = std::sqrt(v[1] * v[1] + v[2] * v[2]); // (k1 - k2) / 2
 	fit.k1                     = v[0] + half;
 	fit.k2                     = v[0] - half;
@@ -104,9 +63,10 @@ EulerFit fitEuler(LocalSamples<1>& samples)
 		std::sqrt(std::max(0.0, 0.5 + 0.5 * cosine)),
 		std::copysign(std::sqrt(std::max(0.0, 0.5 - 0.5 * cosine)), sine)};
 
-	const Eigen::Matrix3d covariance = inverse * sums.spread * inverse;
+	const Eigen::Matrix3d covariance = inverse * spread * inverse;
 	const double          freedom    = total * (1.0 - 3.0 / sums.count);
-	const double          variance   = std::max(0.0, sums.squares - v.dot(sums.rhs)) / freedom;
+	const double          variance =
+		std::max(0.0, sums.squares - v.dot(Eigen::Vector3d::Map(sums.rhs))) / freedom;
 	const Eigen::Vector3d slope(0.0, 2.0 * cosine, 2.0 * sine);
 	fit.error = std::sqrt(variance * slope.dot(covariance * slope));
 	fit.valid = std::isfinite(fit.k1) && std::isfinite(fit.k2) && std::isfinite(fit.error);

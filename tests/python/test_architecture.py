@@ -22,11 +22,13 @@ PARTS_OF_A_STAGE = {
     "fitting/anchor_fits": "curvature/adaptive_curvature",
     "fitting/blend_patch": "cleaning/robust_denoising",
     "fitting/face_projection": "cleaning/robust_denoising",
-    "fitting/point_deviation": "cleaning/robust_denoising",
     "fitting/local_surface": "curvature/adaptive_curvature",
     "fitting/patch_blend": "cleaning/robust_denoising",
+    "fitting/point_deviation": "cleaning/robust_denoising",
     "fitting/point_subsets": "curvature/adaptive_curvature",
+    "fitting/sample_kernels_simd": "fitting/sample_kernels",
     "fitting/surface_anchors": "curvature/adaptive_curvature",
+    "point_set_surface/gaussian_sums_simd": "point_set_surface/gaussian_sums",
     "position_field/position_field_lines": "position_field/position_field_mesh",
     "position_field/surface_graph": "position_field/surface_arrangement",
 }
@@ -34,9 +36,13 @@ PARTS_OF_A_STAGE = {
 TESTED_FROM_PYTHON = {"point_set_surface/surface_picture": "test_filters_point_set_surfaces"}
 # Units with next to nothing that could be wrong by itself: results without functions, interfaces, a few short loops.
 NOTHING_OF_THEIR_OWN = {
-    "base/simd_block",
+    "base/block_size",
+    "base/simd_dispatch",
     "cleaning/outlier_result",
+    "fitting/monomials",
+    "fitting/sample_kernels_avx2",
     "lines/line_crossing",
+    "point_set_surface/gaussian_sums_avx2",
 }
 
 

@@ -7,7 +7,7 @@ namespace curvature_lines {
 namespace {
 
 // By experiment: with 60 neighbours 30 % of random normals change no estimate (benchmarks/curvature.py, "Random normals").
-constexpr Index  gateNeighbors = 60;
+constexpr Index gateNeighbors = 60;
 // Share of the neighbours that agree with a point's own normal; with fewer it is the point's that is wrong.
 constexpr double minAgreement = 0.25;
 

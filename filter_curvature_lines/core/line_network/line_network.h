@@ -1,5 +1,5 @@
-// The lines of curvature of both families as polylines: what tracing and the position field give, and what crossings
-// and meshes are made from.
+// The lines of curvature of both families as polylines: what tracing and the position field give, and what
+// crossings and meshes are made from.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -15,8 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double sameFace = 0.5;  // dot product of normals
-constexpr int    rounds   = 1000; // each cuts a vertex at least; a few do
+// Segments of faces whose normals differ by more than 60 degrees (dot product) do not cross, wherever they
+// pass each other in space: one of them is on the other side of a thin part.
+constexpr double sameFace = 0.5;
+constexpr int    rounds   = 1000; // a safeguard: each cuts one vertex at least, and a few do
 
 struct Line {
 	std::vector<Index>     vertices;
@@ -80,7 +82,8 @@ std::vector<Crossing> findCrossings(const LineNetwork& lines, const std::vector<
 	std::vector<std::vector<Index>> crossed(count); // shorter segments
 	parallelFor(count, {}, [&](Index s) {
 		std::vector<Index> near;
-		// Those that cross it in space are within its length, those on the other sheet of a fold a little further.
+		// Those that cross it in space are within its length, those on the other sheet of a fold a little
+		// further.
 		search.within(middles.col(s), 2.0 * lengths[s], near);
 		for (const Index other : near) {
 			const auto& [a, b] = std::minmax(s, other);

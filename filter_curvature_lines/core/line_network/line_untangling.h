@@ -6,9 +6,10 @@
 
 namespace curvature_lines {
 
-// The last resort for lines from a scaffold that is folded over, as a few triangles at noisy rims are. A line is relieved
-// of the loop in which it crosses itself, or ends before the crossing (LineEnd::Line), whatever takes the fewest
-// vertices. Crossings are those in the tangent planes of the vertices; segments of different faces have none.
+// For lines from a scaffold that is folded over, as a few triangles at noisy rims are. A line that crosses
+// itself loses the loop between, and of two lines that cross one ends before the crossing (LineEnd::Line);
+// whatever takes the fewest vertices. Crossings are those in the tangent planes of the vertices; segments
+// of different faces have none.
 LineNetwork untangled(const LineNetwork& lines);
 
 } // namespace curvature_lines

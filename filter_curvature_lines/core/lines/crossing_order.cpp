@@ -8,7 +8,7 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr int MaxRounds = 50;
+constexpr int mostRounds = 50; // a safeguard: a few do
 
 // Lengths along the lines, from one parameter to another.
 class ArcLengths {
@@ -216,7 +216,7 @@ Index makeConsistent(
 	const ArcLengths arcs(lines);
 	Index            exchanges = 0;
 	removeCurls(lines, arcs, reach, crossings);
-	for (int round = 0; round < MaxRounds; ++round) {
+	for (int round = 0; round < mostRounds; ++round) {
 		while (removeTouches(Passages(lines, arcs, reach, crossings), crossings)) {
 		}
 		const Index more = reorderTriangles(Passages(lines, arcs, reach, crossings), crossings);

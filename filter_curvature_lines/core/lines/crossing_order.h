@@ -11,14 +11,13 @@ namespace curvature_lines {
 std::vector<std::vector<Index>>
 sortAlongLines(const LineNetwork& lines, const std::vector<LineCrossing>& crossings);
 
-// Corrections at crossings that are closer along their lines than reach[line vertex], repeated
-// while they find something. None changes V - E + F of lines that lie in a surface.
-// - A line that crosses itself again at once does so by noise: that crossing goes.
+// Corrections at crossings that are closer along their lines than reach[line vertex], repeated while they
+// find something. None changes V - E + F of lines that lie in a surface.
+// - A line that crosses itself within that distance does so by noise: that crossing goes.
 // - Two lines that cross and cross back at once bound an empty digon: both crossings go.
-// - Three lines that cross pairwise bound a triangle. Each line sees the opposite corner on one
-// side, by
-//   either of the two others; where just two lines see it on different sides, the third has its two
-//   crossings in the wrong order, and they are exchanged.
+// - Three lines that cross pairwise bound a triangle. The opposite corner lies on one side of each line,
+//   whichever of the two others leads there; where the two answers differ for exactly one line, the two
+//   crossings on it are in the wrong order, and they are exchanged.
 // Returns the number of exchanges.
 Index makeConsistent(
 	const LineNetwork&         lines,

@@ -14,13 +14,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double Pi = 3.14159265358979323846;
-// A sample inside a loop is covered when there is a point of the cloud within so many spacings of
-// it, of the point below or above it, or aside in the tangent plane: samples lie on chords, and a
-// face may be the tip of a finger. Only points that look the same way count, so the wall at the end
-// of a tube does not.
-constexpr double CoverDistance = 2.0;
-constexpr double SameWay       = 0.5;
+constexpr double pi = 3.14159265358979323846;
+// A sample inside a loop is covered when there is a point of the cloud within so many spacings of it, or of
+// a place above or below it along the normal: samples lie on chords of the surface, and a face may close
+// the end of a finger. Only points whose normals agree (dot product above 0) count, so the far side of a
+// tube's open end does not. By experiment.
+constexpr double coverDistance = 2.0;
+// Dot product of a point's normal and the loop's, above which the distance is measured in the tangent
+// plane: 60 degrees.
+constexpr double sameWay = 0.5;
+// Turning numbers beyond which a loop is no face, whatever the cloud: around the outside of an open piece
+// it is -1, where a crossing is missing 3 and more. Between the two the cloud decides, because strongly
+// curved caps and saddles do not have the 1 of a flat disk. By experiment.
+constexpr double rimTurns = -0.5, tangledTurns = 2.5;
 
 // Signed angle from a to b about n, in (-pi, pi].
 double signedAngle(const Vector3d& a, const Vector3d& b, const Vector3d& n)
@@ -33,10 +39,10 @@ double cornerAngle(const HalfEdgeGraph& graph, Index in, Index out)
 {
 	const Index back = HalfEdgeGraph::twin(in);
 	if (back == out)
-		return 2.0 * Pi;
+		return 2.0 * pi;
 	const double angle = signedAngle(
 		graph.tangent(out), graph.tangent(back), graph.normals().col(graph.origin(out)));
-	return angle < 0.0 ? angle + 2.0 * Pi : angle;
+	return angle < 0.0 ? angle + 2.0 * pi : angle;
 }
 
 // How far an edge turns to the left between its two end tangents. By way of its middle, because a
@@ -63,9 +69,9 @@ double turningNumber(const HalfEdgeGraph& graph, const std::vector<Index>& loop)
 	double turning = 0.0;
 	for (std::size_t k = 0; k < loop.size(); ++k) {
 		const Index out = loop[(k + 1) % loop.size()];
-		turning += Pi - cornerAngle(graph, loop[k], out) + bend(graph, loop[k]);
+		turning += pi - cornerAngle(graph, loop[k], out) + bend(graph, loop[k]);
 	}
-	return turning / (2.0 * Pi);
+	return turning / (2.0 * pi);
 }
 
 LoopClassifier::LoopClassifier(
@@ -76,11 +82,10 @@ LoopClassifier::LoopClassifier(
 
 LoopKind LoopClassifier::operator()(const std::vector<Index>& loop) const
 {
-	// Between the bounds a face may be a strongly curved cap or saddle: there the cloud decides.
 	const double turning = turningNumber(m_graph, loop);
-	if (turning < -0.5)
+	if (turning < rimTurns)
 		return LoopKind::Rim;
-	if (turning > 2.5)
+	if (turning > tangledTurns)
 		return LoopKind::Tangled;
 	return isCovered(loop) ? LoopKind::Face : LoopKind::Hole;
 }
@@ -115,7 +120,7 @@ bool LoopClassifier::isCovered(const std::vector<Index>& loop) const
 	return 2 * covered >= samples;
 }
 
-// Looks up and down the normal from the sample; `site` is where the search starts and ends.
+// Searches along the normal to both sides of the sample; `site` is where the search starts and ends.
 bool LoopClassifier::isPointAbove(
 	const Vector3d& sample, const Vector3d& normal, double size, Index& site) const
 {
@@ -124,13 +129,13 @@ bool LoopClassifier::isPointAbove(
 		site                  = m_cells.locate(point, site);
 		const Vector3d n      = m_cloud.normals.col(site);
 		Vector3d       offset = m_cells.site(site) - point;
-		if (height == 0.0 && n.dot(normal) > SameWay)
+		if (height == 0.0 && n.dot(normal) > sameWay)
 			offset -= offset.dot(n) * n;
-		return n.dot(normal) > 0.0 && offset.norm() < CoverDistance * siteSpacing(m_cells, site);
+		return n.dot(normal) > 0.0 && offset.norm() < coverDistance * siteSpacing(m_cells, site);
 	};
 	if (isNear(0.0))
 		return true;
-	const double step = CoverDistance * siteSpacing(m_cells, site);
+	const double step = coverDistance * siteSpacing(m_cells, site);
 	if (!(step > 0.0))
 		return false;
 	for (double height = step; height < 1.5 * size; height += step)

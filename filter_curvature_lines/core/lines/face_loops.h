@@ -1,5 +1,6 @@
 // Which loops of an embedded graph bound a face, and which run around a hole or along a rim (A09
-// section 6 makes every loop a face). SPDX-License-Identifier: GPL-3.0-or-later
+// section 6 makes every loop a face).
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include "half_edge_graph.h"

@@ -19,11 +19,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Spacings of the cloud below which crossings that follow each other on a line are one vertex: at
-// once, and in loops that turn twice, where the distance doubles until it helps.
-constexpr double SamePlace     = 1e-3;
-constexpr double FirstRepair   = 0.06;
-constexpr double LargestRepair = 1.0;
+// Distances in spacings of the cloud. Crossings that follow each other on a line nearer than this are one
+// vertex: the "existing intersection" at which A09 section 6 lets further lines meet. Far below what a
+// cloud can resolve, above rounding errors.
+constexpr double samePlace = 1e-3;
+// Crossings of a loop that turns twice are merged up to this distance, which doubles until no such loop is
+// left or it reaches the last one: beyond a spacing, crossings are no error of projection. By experiment.
+constexpr double firstMergeDistance = 0.06;
+constexpr double lastMergeDistance  = 1.0;
+// Turns of a loop (turningNumber) from which on it is tangled: 1 bounds a disk, 2 is a crossing in the
+// wrong order; the Gaussian curvature inside takes its share of either.
+constexpr double tangledTurns = 1.8;
 
 class Arranger {
 public:
@@ -42,7 +48,7 @@ public:
 					a,
 					b,
 					(found.crossings[a].position - found.crossings[b].position).norm(),
-					SamePlace);
+					samePlace);
 			}
 	}
 
@@ -161,7 +167,7 @@ private:
 		const double   start = parameterOf(from), end = parameterOf(to);
 		const double   half   = 0.5 * (start + end + wrap);
 		const Vector3d middle = pointAt(line, half);
-		const double   extent = 2.0 * m_radius[v] + SamePlace * m_spacing[m_first[v]];
+		const double   extent = 2.0 * m_radius[v] + samePlace * m_spacing[m_first[v]];
 		const bool     inside = v == w && (middle - m_positions.col(v)).norm() < extent;
 		if (!inside)
 			pieces.push_back({v, w, line, from, to, half, wrap, middle});
@@ -201,7 +207,7 @@ std::vector<std::vector<Index>> tangledLoops(const HalfEdgeGraph& graph)
 {
 	std::vector<std::vector<Index>> tangled;
 	for (std::vector<Index>& loop : graph.faceLoops())
-		if (turningNumber(graph, loop) > 1.8)
+		if (turningNumber(graph, loop) > tangledTurns)
 			tangled.push_back(std::move(loop));
 	return tangled;
 }
@@ -215,7 +221,7 @@ arrangeLines(const VoronoiCells& cells, const LineNetwork& lines, const LineInte
 	HalfEdgeGraph graph = arranger.graph();
 	graph.reduce();
 	std::vector<std::vector<Index>> tangled = tangledLoops(graph);
-	for (double distance = FirstRepair; !tangled.empty() && distance < LargestRepair;) {
+	for (double distance = firstMergeDistance; !tangled.empty() && distance < lastMergeDistance;) {
 		if (arranger.joinTangled(graph, tangled, distance)) {
 			graph = arranger.graph();
 			graph.reduce();

@@ -14,7 +14,7 @@ struct LineArrangement {
 };
 
 // Pairs of lines cross consistently, but where three pass within the height of one above the other,
-// the order of their crossings may fit no surface. A loop that turns more than once betrays it
+// the order of their crossings may fit no surface. A loop that turns more than once shows it
 // (Gauss-Bonnet); its closest crossings become one vertex, with the lines sorted around it by where
 // they leave, until every loop turns once.
 LineArrangement

@@ -22,13 +22,14 @@ using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point  = Kernel::Point_3;
 
-// Half the height of a strip, in spacings of the cloud: lines on the same surface differ in height
-// by the error of their projection, a fraction of the spacing.
-constexpr double StripHeight = 1.5;
-// Two lines that cross and cross back within this many strip heights only touch.
-constexpr double TouchLength = 4.0;
-// Below so many boxes CGAL scans instead of dividing them further; strips are flat and divide badly.
-constexpr std::ptrdiff_t ScannedBoxes = 300;
+// Half the height of a strip, in spacings of the cloud: lines on the same surface differ in height by the
+// error of their projection, a fraction of the spacing. By experiment.
+constexpr double stripHeight = 1.5;
+// Two lines that cross and cross back within this many half heights only touch. By experiment.
+constexpr double touchLength = 4.0;
+// Below so many boxes CGAL scans instead of dividing them further; strips are flat and divide badly. CGAL's
+// own default is 10; chosen for time on the clouds of benchmarks/table1.py. Changes no result.
+constexpr std::ptrdiff_t scannedBoxes = 300;
 
 struct Segment {
 	Index line, index; // index: along the line
@@ -52,7 +53,7 @@ stripHeights(const VoronoiCells& cells, const LineNetwork& lines, const Progress
 		for (Index v = lines.offsets[line]; v < lines.offsets[line + 1]; ++v) {
 			const Index next = cells.locate(lines.vertices.col(v), cell);
 			const bool  same = next == cell && v > lines.offsets[line];
-			heights[v]       = same ? heights[v - 1] : StripHeight * siteSpacing(cells, next);
+			heights[v]       = same ? heights[v - 1] : stripHeight * siteSpacing(cells, next);
 			cell             = next;
 		}
 	});
@@ -159,7 +160,7 @@ private:
 		crossing.tangent[0]   = (p1 - p0).normalized();
 		crossing.tangent[1]   = (q1 - q0).normalized();
 		crossing.side         = side;
-		// The tangents sort the edges around the vertex: they have to tell the same side as the
+		// The tangents sort the edges around the vertex: they have to give the same side as the
 		// predicates.
 		const Vector3d left  = crossing.normal.cross(crossing.tangent[0]).normalized();
 		const double   aside = crossing.tangent[1].dot(left);
@@ -226,7 +227,7 @@ std::vector<LineCrossing> findCrossings(
 		boxes.end(),
 		test,
 		CGAL::Box_intersection_d::Box_traits_d<Box>(),
-		ScannedBoxes);
+		scannedBoxes);
 	std::sort(crossings.begin(), crossings.end(), [](const LineCrossing& a, const LineCrossing& b) {
 		return std::tie(a.line[0], a.line[1], a.parameter[0], a.parameter[1]) <
 		       std::tie(b.line[0], b.line[1], b.parameter[0], b.parameter[1]);
@@ -246,7 +247,7 @@ intersectLines(const VoronoiCells& cells, const LineNetwork& lines, const Progre
 	const std::size_t   found = result.crossings.size();
 	std::vector<double> reach;
 	for (double height : heights)
-		reach.push_back(TouchLength * height);
+		reach.push_back(touchLength * height);
 	result.reordered = makeConsistent(lines, reach, result.crossings);
 	result.cancelled = static_cast<Index>(found - result.crossings.size());
 	result.alongLine = sortAlongLines(lines, result.crossings);

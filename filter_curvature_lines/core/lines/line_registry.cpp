@@ -11,7 +11,9 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double SameSheetCosine = 0.5;
+// Cosine of the angle of normals, 60 degrees: beyond, a segment is on another sheet or behind a fold, and
+// the two sides of a thin plate do not stop each other's lines. The papers have no such test.
+constexpr double sameSheet = 0.5;
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
@@ -98,7 +100,7 @@ bool LineRegistry::blocks(const FlowSegment& segment, const ProximityQuery& quer
 	if (own && (segment.arc <= query.ownFrom || segment.arc >= query.ownTo))
 		return false;
 	const double radius = own ? query.ownRadius : query.radius;
-	return segment.normal.dot(query.normal) > SameSheetCosine &&
+	return segment.normal.dot(query.normal) > sameSheet &&
 	       distance2ToSegment(query.position, segment.from, segment.to) < radius * radius;
 }
 

@@ -14,20 +14,25 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double AutomaticMin = 2.0; // median spacings: lines some Voronoi cells apart
-// median spacings: below, the cloud says nothing about the lines
-constexpr double SmallestMin  = 0.5;
-constexpr double AutomaticMax = 0.1; // bounding-box diagonals
-// with a target, up to so many times the mean distance and down to 1 / it
-constexpr double         TargetRange     = 2.0;
-constexpr double         SmallestEpsilon = 1e-12, LargestEpsilon = 1.0; // diagonals
-constexpr double         EpsilonTolerance = 3e-5;                       // of epsilon
-constexpr std::uintmax_t MostEvaluations  = 40;
-// Area of a point's share of the surface in units of its squared spacing: the mean distance to the six
-// slices' neighbours is 1.22 / sqrt(density).
-constexpr double ShareOfSpacing = 0.67;
-// Lines end up between d and 2 d apart: realised distance over d, measured.
-constexpr double RealisedDistance = 1.15;
+// The automatic bounds of d(kappa): A09 has none. Lines nearer than two median spacings run through
+// the same points; a tenth of the diagonal is where flat parts, whose d(kappa) is infinite, get lines at all.
+constexpr double automaticLeast = 2.0; // median spacings
+constexpr double automaticMost  = 0.1; // diagonals of the bounding box
+// Median spacings, below which no distance is taken, asked for or not: the cloud does not resolve such
+// lines.
+constexpr double smallestLeast = 0.5;
+// With a target count the bounds go up to so many times the mean distance it needs, and down to 1 / it: on
+// a cylinder or plane one family is at its upper bound. By experiment on those.
+constexpr double targetRange = 2.0;
+// Where epsilon is looked for, in diagonals: below and above, all lines are at a bound of their distance.
+constexpr double         smallestEpsilon = 1e-12, largestEpsilon = 1.0;
+constexpr double         epsilonTolerance = 3e-5; // relative
+constexpr std::uintmax_t mostEvaluations  = 40;   // a safeguard
+// Area of a point's share of the surface in units of its squared spacing: the mean distance to the nearest
+// neighbours in six slices is 1.22 / sqrt(density) in random clouds, and 0.67 = 1 / 1.22^2.
+constexpr double shareOfSpacing = 0.67;
+// Mean distance of lines over d: they start at d from the next one and end below stopFactor d. Measured.
+constexpr double realisedDistance = 1.15;
 
 struct Bounds {
 	double least, most;
@@ -118,7 +123,7 @@ double surfaceArea(const MinimumNeighborhoods& minimum)
 {
 	double sum = 0.0;
 	for (double h : minimum.spacing)
-		sum += ShareOfSpacing * h * h;
+		sum += shareOfSpacing * h * h;
 	return sum;
 }
 
@@ -129,7 +134,7 @@ predictedCrossings(const MinimumNeighborhoods& minimum, const std::array<std::ve
 	double sum = 0.0;
 	for (std::size_t i = 0; i < d[0].size(); ++i) {
 		const double h = minimum.spacing[i];
-		sum += ShareOfSpacing * h * h / (RealisedDistance * RealisedDistance * d[0][i] * d[1][i]);
+		sum += shareOfSpacing * h * h / (realisedDistance * realisedDistance * d[0][i] * d[1][i]);
 	}
 	return sum;
 }
@@ -142,14 +147,14 @@ double epsilonFor(double crossings, const Predict& predict)
 	const auto surplus = [&](double logarithm) {
 		return std::log(predict(std::exp(logarithm)) / crossings);
 	};
-	const double low = std::log(SmallestEpsilon), high = std::log(LargestEpsilon);
+	const double low = std::log(smallestEpsilon), high = std::log(largestEpsilon);
 	const double atLow = surplus(low), atHigh = surplus(high);
 	if (!(atLow > 0.0))
-		return SmallestEpsilon;
+		return smallestEpsilon;
 	if (!(atHigh < 0.0))
-		return LargestEpsilon;
-	const auto     settled = [](double a, double b) { return std::abs(b - a) < EpsilonTolerance; };
-	std::uintmax_t evaluations = MostEvaluations;
+		return largestEpsilon;
+	const auto     settled = [](double a, double b) { return std::abs(b - a) < epsilonTolerance; };
+	std::uintmax_t evaluations = mostEvaluations;
 	const auto     bracket =
 		boost::math::tools::toms748_solve(surplus, low, high, atLow, atHigh, settled, evaluations);
 	return std::exp(0.5 * (bracket.first + bracket.second));
@@ -162,18 +167,18 @@ Bounds spacingBounds(
 	double                      crossings)
 {
 	const double median = minimum.medianSpacing;
-	Bounds       bounds = {AutomaticMin * median, AutomaticMax * diagonal};
+	Bounds       bounds = {automaticLeast * median, automaticMost * diagonal};
 	if (crossings > 0.0) {
 		// On a cylinder or a plane epsilon alone cannot reach a target: one family stays at its bound.
-		const double mean = std::sqrt(surfaceArea(minimum) / crossings) / RealisedDistance;
-		bounds.least      = std::min(bounds.least, std::max(mean / TargetRange, median));
-		bounds.most       = TargetRange * mean;
+		const double mean = std::sqrt(surfaceArea(minimum) / crossings) / realisedDistance;
+		bounds.least      = std::min(bounds.least, std::max(mean / targetRange, median));
+		bounds.most       = targetRange * mean;
 	}
 	if (options.minSpacing > 0.0)
 		bounds.least = options.minSpacing;
 	if (options.maxSpacing > 0.0)
 		bounds.most = options.maxSpacing;
-	bounds.least = std::max(bounds.least, SmallestMin * median);
+	bounds.least = std::max(bounds.least, smallestLeast * median);
 	bounds.most  = std::max(bounds.most, bounds.least);
 	return bounds;
 }

@@ -16,16 +16,24 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double MaxLength = 10.0; // diagonals
-// cosine of 60 degrees, of a line that comes back to its start
-constexpr double SameDirection = 0.5;
-// own parts closer than this along the line do not count, in d
-constexpr double OwnArc = 3.0;
-// own parts nearer than this stop the line, in stop distances
-constexpr double OwnDistance   = 0.9;
-constexpr double ClosingSpread = 30.0; // the offset is spread over so many times its length
-constexpr int    RimBisections = 5;
-constexpr Index  ReportEvery   = 1024;
+// A09 section 5.1 leaves these open; all by experiment on tori, where without a test against itself one
+// line wound 4000 steps. Length at which a line is given up, in diagonals of the bounding box: a safeguard
+// against lines that never end.
+constexpr double mostLength = 10.0;
+// A line closes that comes back to its start in about its own direction: cosine of 60 degrees.
+constexpr double closingCosine = 0.5;
+// Parts of a line nearer than this along itself do not stop it, and from this far on it heads for its start
+// to close; in d.
+constexpr double ownArc = 3.0;
+// Parts of itself stop a line at this share of the distance at which others do, so that it closes before it
+// is stopped.
+constexpr double ownDistance = 0.9;
+// A line that closes misses its start sideways; the offset is spread over so many times its length, a turn
+// of 2 degrees.
+constexpr double closingSpread = 30.0;
+// Bisections of the last step before a rim: it is met within 1 / 32 of a step.
+constexpr int   rimBisections = 5;
+constexpr Index reportEvery   = 1024; // points or seeds between reports of progress
 
 using Points = std::vector<FlowPoint>;
 
@@ -62,7 +70,7 @@ public:
 private:
 	void traceThrough(Index seed, Index place, const Progress& progress);
 	LineEnd traceHalf(const FlowPoint& start, Points& half, const Progress& progress);
-	void reachOut(const FlowPoint& from, Points& half);
+	void stepUpToRim(const FlowPoint& from, Points& half);
 	bool occupied(const FlowPoint& point, bool approachesStart);
 	void registerSegment(const FlowPoint& from, const FlowPoint& to);
 	void closeUp(const FlowPoint& start, Points& half);
@@ -94,13 +102,13 @@ bool FamilyTracer::occupied(const FlowPoint& point, bool approachesStart)
 	query.cell      = point.cell;
 	query.radius    = m_options.stopFactor * d;
 	query.line      = currentLine();
-	query.ownRadius = OwnDistance * query.radius;
+	query.ownRadius = ownDistance * query.radius;
 	if (m_side > 0.0) {
-		query.ownFrom = approachesStart ? OwnArc * d : -HUGE_VAL;
-		query.ownTo   = point.arc - OwnArc * d;
+		query.ownFrom = approachesStart ? ownArc * d : -HUGE_VAL;
+		query.ownTo   = point.arc - ownArc * d;
 	}
 	else { // all of the first half counts, or the second would run along it
-		query.ownFrom = point.arc + OwnArc * d;
+		query.ownFrom = point.arc + ownArc * d;
 		query.ownTo   = HUGE_VAL;
 	}
 	return m_registry.occupied(query);
@@ -119,12 +127,12 @@ void FamilyTracer::registerSegment(const FlowPoint& from, const FlowPoint& to)
 }
 
 // A step that ended beyond a rim or crease, again as far as it goes this side of it.
-void FamilyTracer::reachOut(const FlowPoint& from, Points& half)
+void FamilyTracer::stepUpToRim(const FlowPoint& from, Points& half)
 {
 	const double step = m_flow.step(from.cell);
 	FlowPoint    best, tried;
 	double       reached = 0.0, beyond = 1.0;
-	for (int k = 0; k < RimBisections; ++k) {
+	for (int k = 0; k < rimBisections; ++k) {
 		const double middle = 0.5 * (reached + beyond);
 		if (m_flow.sampleAt(from.position + middle * step * from.direction, from, tried) &&
 		    !m_flow.leftCloud(tried)) {
@@ -148,10 +156,10 @@ void FamilyTracer::reachOut(const FlowPoint& from, Points& half)
 LineEnd FamilyTracer::traceHalf(const FlowPoint& start, Points& half, const Progress& progress)
 {
 	FlowPoint front = start, next;
-	while (std::abs(front.arc) < MaxLength * m_diagonal) {
+	while (std::abs(front.arc) < mostLength * m_diagonal) {
 		const bool onwards = m_flow.advance(front, m_side, next);
 		if (!onwards || m_flow.leftCloud(next)) {
-			reachOut(front, half);
+			stepUpToRim(front, half);
 			return !onwards || m_flow.isCrease(next.cell) ? LineEnd::Crease : LineEnd::Rim;
 		}
 		if (m_flow.endsAtUmbilic(front, next))
@@ -164,9 +172,9 @@ LineEnd FamilyTracer::traceHalf(const FlowPoint& start, Points& half, const Prog
 		const double   step       = (next.position - front.position).norm();
 		const double   d          = std::max(distance(next.cell), 2.0 * step);
 		const bool     approaches = m_side > 0.0 && next.arc > 2.0 * step && ahead > 0.0 &&
-		                        ahead < OwnArc * d &&
-		                        aside < OwnDistance * m_options.stopFactor * d &&
-		                        next.direction.dot(start.direction) > SameDirection;
+		                        ahead < ownArc * d &&
+		                        aside < ownDistance * m_options.stopFactor * d &&
+		                        next.direction.dot(start.direction) > closingCosine;
 		if (occupied(next, approaches))
 			return LineEnd::Line;
 		registerSegment(front, next);
@@ -174,7 +182,7 @@ LineEnd FamilyTracer::traceHalf(const FlowPoint& start, Points& half, const Prog
 		if (approaches && ahead < 2.0 * step)
 			return LineEnd::None;
 		front = next;
-		if (half.size() % ReportEvery == 0)
+		if (half.size() % reportEvery == 0)
 			progress.report(0.0);
 	}
 	return LineEnd::Length;
@@ -186,7 +194,7 @@ void FamilyTracer::closeUp(const FlowPoint& start, Points& half)
 	const FlowPoint last  = half.back();
 	const Vector3d  gap   = start.position - last.position;
 	const Vector3d  aside = gap - gap.dot(last.direction) * last.direction;
-	const double    from  = std::max(0.0, last.arc - ClosingSpread * aside.norm());
+	const double    from  = std::max(0.0, last.arc - closingSpread * aside.norm());
 	for (FlowPoint& point : half) {
 		if (point.arc <= from)
 			continue;
@@ -256,7 +264,7 @@ void FamilyTracer::run(const std::vector<Index>& seeds, const Progress& progress
 	const auto count = static_cast<Index>(seeds.size());
 	for (Index k = 0; k < count; ++k) {
 		const Progress here = progress.sub(double(k) / count, 1.0, "Tracing lines");
-		if (k % ReportEvery == 0)
+		if (k % reportEvery == 0)
 			here.report(0.0);
 		traceThrough(seeds[k], k, here);
 	}
@@ -314,9 +322,10 @@ LineNetwork merged(const std::array<FamilyTracer, 2>& families)
 	return network;
 }
 
-// A traced network within so much of the target is not traced again.
-constexpr double TargetTolerance = 0.08;
-constexpr int    TargetRounds    = 3;
+// A network whose number of crossings is within this of the target (logarithm of their ratio) is not traced
+// again; and so often at most. Each attempt is corrected by the ratio of the one before. By experiment.
+constexpr double targetTolerance = 0.08;
+constexpr int    targetRounds    = 3;
 
 } // namespace
 
@@ -335,7 +344,7 @@ LineNetwork traceLines(
         cloud, field, minimum, umbilics, cells, {options.tolerance, options.projection});
 	LineNetwork best;
 	double      bestMiss = HUGE_VAL, wanted = options.targetVertices;
-	const int   rounds = options.targetVertices > 0 ? TargetRounds : 1;
+	const int   rounds = options.targetVertices > 0 ? targetRounds : 1;
 	for (int round = 0; round < rounds; ++round) {
 		const LineSpacing spacing = chooseLineSpacing(cloud, field, minimum, options, wanted);
 		std::array<FamilyTracer, 2> families = {
@@ -357,7 +366,7 @@ LineNetwork traceLines(
 			bestMiss = miss;
 			best     = std::move(network);
 		}
-		if (bestMiss < TargetTolerance)
+		if (bestMiss < targetTolerance)
 			break;
 		wanted *= options.targetVertices / found;
 	}

@@ -1,5 +1,6 @@
 // From crossings to faces: the half-edge graph of the lines, its reduction, its loops, and polygons
-// that form a two-manifold (A09 section 6). SPDX-License-Identifier: GPL-3.0-or-later
+// that form a two-manifold (A09 section 6).
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "quad_mesh.h"
 
 #include <algorithm>
@@ -19,7 +20,9 @@ namespace {
 using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
-constexpr Index Crumb = 4; // faces
+// Components of fewer faces go where another one has more than ten times as many: stray lines beside a
+// mesh. By experiment.
+constexpr Index fewestFaces = 4;
 
 Polygons facesOf(const HalfEdgeGraph& graph, const LoopClassifier& kindOf, QuadMeshResult& result)
 {
@@ -59,8 +62,8 @@ bool isInside(const Vector3d& point, const Face& face, const Polygons& polygons)
 	return inside;
 }
 
-// Lines that cross each other but none of those around them form a second layer over a face of the
-// others: it goes, and so do crumbs beside a mesh. Separate objects stay.
+// Lines that cross each other but none of those around them form a second layer over a face of the others:
+// it goes, and so do components of very few faces beside a large one. Separate objects stay.
 Index removeIslands(Polygons& polygons)
 {
 	std::vector<Index> component(polygons.vertices.size());
@@ -84,7 +87,7 @@ Index removeIslands(Polygons& polygons)
 			return size[root(face[0])] > size[c] && isInside(polygons.vertices[c], face, polygons);
 		};
 		island[c] =
-			size[c] > 0 && ((size[c] < Crumb && largest > 10 * Crumb) ||
+			size[c] > 0 && ((size[c] < fewestFaces && largest > 10 * fewestFaces) ||
 		                    std::any_of(polygons.faces.begin(), polygons.faces.end(), liesIn));
 	}
 	const auto onIsland = [&](const Face& face) { return island[root(face[0])] != 0; };

@@ -13,20 +13,34 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double MinStep = 0.05, MaxStep = 0.5; // of the local spacing
-constexpr double StartStep       = 0.25;        // at least, of the local spacing: see SurfaceFlow()
-constexpr double SharpTurnCosine = 0.5;         // 60 degrees in one step
-constexpr double BridgeCosine    = 0.94;        // 20 degrees at the border of an umbilical region
-// local spacings from the closest point: within the cloud, or in a void of it
-constexpr double CloudReach = 1.5;
-// local spacings from the closest point that even a void does not have
-constexpr double VoidReach    = 2.5;
-constexpr double VoidWidths[] = {2.5, 3.5}; // local spacings from within a void to behind it
-constexpr double VoidSlack    = 1.5;        // local spacings to the closest point beyond one
-constexpr double CreaseCosine = 0.8;        // normals of points next to each other
-constexpr double CreaseReach  = 2.5;        // local spacings that those are apart at most
+// Lengths of steps, in local spacings. A09 starts with half the distance to the nearest point; in random
+// clouds that is often next to nothing, and what a change of the support moves a projected point weighs
+// more than the step: at least a quarter.
+constexpr double leastStart = 0.25, mostStep = 0.5;
+// No step is made shorter than this by the tolerance (A09 has no bound).
+constexpr double shortestStep = 0.05;
+// A step has to lead on by this share of its length after projection, or the line ends.
+constexpr double leastProgress = 0.2;
+// Cosines of angles between successive points of a line, and of neighbours: 60 degrees in one step is a
+// crease.
+constexpr double sharpTurn = 0.5;
+// 20 degrees: at the border of an umbilical region a line goes on whose direction turns by less.
+constexpr double bridgedTurn = 0.94;
+// Rims and voids of the cloud, in local spacings; by experiment on random clouds of closed surfaces, where
+// no line may end at a rim, and of helicoids, cylinders and half tori, where no line may leave the surface.
+// From the closest point: so far is within the cloud or in a void of it, and so far is outside even of
+// voids.
+constexpr double cloudReach = 1.5, voidReach = 2.5;
+// From within a void to behind it. Among ten thousand random points one or two voids are wider.
+constexpr double voidWidths[] = {2.5, 3.5};
+// From the place behind a void to the closest point there.
+constexpr double voidSlack = 1.5;
+// A crease: normals of points at most so far apart differ by more than 37 degrees. By experiment.
+constexpr double creaseCosine = 0.8;
+constexpr double creaseReach  = 2.5; // local spacings
 
-// The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families apart.
+// The axes of an umbilical region come in arbitrary order; that of most of its border keeps the families
+// apart.
 std::vector<char> swappedRegions(
 	const PointCloud&           cloud,
 	const CurvatureField&       field,
@@ -39,8 +53,7 @@ std::vector<char> swappedRegions(
 		if (region < 0)
 			continue;
 		for (Index j : minimum.neighbors[i])
-			if (!umbilics.umbilic[j] &&
-			    cloud.normals.col(i).dot(cloud.normals.col(j)) > SharpTurnCosine)
+			if (!umbilics.umbilic[j] && cloud.normals.col(i).dot(cloud.normals.col(j)) > sharpTurn)
 				votes[region] += std::abs(umbilics.d1.col(i).dot(field.d1.col(j))) -
 				                 std::abs(umbilics.d1.col(i).dot(field.d2.col(j)));
 	}
@@ -68,15 +81,13 @@ SurfaceFlow::SurfaceFlow(
 		for (Index j : cells.neighbors(i))
 			nearest2 = std::min(nearest2, (cells.site(j) - cells.site(i)).squaredNorm());
 		const double local = minimum.spacing[i] > 0.0 ? minimum.spacing[i] : minimum.medianSpacing;
-		// A09 starts with half the distance to the nearest point. In random clouds that is often next to
-		// nothing, and what a change of the support moves a projected point weighs more than the step.
-		m_step[i] = std::clamp(0.5 * std::sqrt(nearest2), StartStep * local, MaxStep * local);
+		m_step[i] = std::clamp(0.5 * std::sqrt(nearest2), leastStart * local, mostStep * local);
 	}
 }
 
 double SurfaceFlow::leastStep(Index cell) const
 {
-	return MinStep * m_minimum.spacing[cell];
+	return shortestStep * m_minimum.spacing[cell];
 }
 
 Vector3d SurfaceFlow::directionAt(Index cell, int family) const
@@ -92,7 +103,7 @@ Vector3d SurfaceFlow::regionDirection(Index cell, int family) const
 	return (first ? m_umbilics.d1 : m_umbilics.d2).col(cell);
 }
 
-// The tensor says nothing in umbilical regions; there the axes of the region lead.
+// In umbilical regions the tensor has no directions; those of the region are followed there.
 Vector3d SurfaceFlow::directionOf(const SurfaceSample& sample, Index cell, int family) const
 {
 	if (m_umbilics.region[cell] < 0)
@@ -118,8 +129,8 @@ bool SurfaceFlow::sampleAt(
 	if (result.direction.dot(previous.direction) < 0.0)
 		result.direction = -result.direction;
 	result.inwards = sample.inwards;
-	return result.direction.dot(previous.direction) > SharpTurnCosine &&
-	       result.normal.dot(previous.normal) > SharpTurnCosine;
+	return result.direction.dot(previous.direction) > sharpTurn &&
+	       result.normal.dot(previous.normal) > sharpTurn;
 }
 
 // One step of the second-order scheme A09 uses for its error estimate: along the mean of the directions at
@@ -144,29 +155,28 @@ bool SurfaceFlow::advance(const FlowPoint& from, double side, FlowPoint& to) con
 		return false;
 	const double moved = (to.position - from.position).dot(chord) / chord.norm();
 	to.arc             = from.arc + side * moved;
-	return moved > 0.2 * step; // the projection may not undo the step
+	return moved > leastProgress * step;
 }
 
 bool SurfaceFlow::leftCloud(const FlowPoint& point) const
 {
 	const double distance = (point.position - m_cloud.positions.col(point.cell)).norm();
 	const double local    = m_minimum.spacing[point.cell];
-	if (distance > VoidReach * local)
+	if (distance > voidReach * local)
 		return true;
 	const double aside = point.inwards.norm();
-	if (distance < CloudReach * local &&
+	if (distance < cloudReach * local &&
 	    (aside < rimOffset || point.inwards.dot(point.direction) > 0.0))
 		return false;
 	if (aside == 0.0)
 		return true;
-	// All points lie behind. At a rim there are none beyond, either; a void has some on its other side. Among ten
-	// thousand random points one or two voids are as wide as that.
-	for (const double width : VoidWidths) {
+	// All points lie behind. At a rim there are none beyond, either; a void has some on its other side.
+	for (const double width : voidWidths) {
 		const Vector3d beyond = point.position - width * local / aside * point.inwards;
 		const Index    next   = m_cells.locate(beyond, point.cell);
-		const double   around = VoidSlack * std::max(local, m_minimum.spacing[next]);
+		const double   around = voidSlack * std::max(local, m_minimum.spacing[next]);
 		if ((beyond - m_cells.site(next)).norm() < around &&
-		    m_cloud.normals.col(next).dot(point.normal) > SharpTurnCosine)
+		    m_cloud.normals.col(next).dot(point.normal) > sharpTurn)
 			return false;
 	}
 	return true;
@@ -176,10 +186,10 @@ bool SurfaceFlow::isCrease(Index cell) const
 {
 	for (Index j : m_cells.neighbors(cell)) {
 		const bool near =
-			(m_cells.site(j) - m_cells.site(cell)).norm() < CreaseReach * m_minimum.spacing[cell];
+			(m_cells.site(j) - m_cells.site(cell)).norm() < creaseReach * m_minimum.spacing[cell];
 		const double cosine = m_cloud.normals.col(j).dot(m_cloud.normals.col(cell));
 		// not the other side of a sheet
-		if (near && cosine < CreaseCosine && cosine > -SharpTurnCosine)
+		if (near && cosine < creaseCosine && cosine > -sharpTurn)
 			return true;
 	}
 	return false;
@@ -194,7 +204,7 @@ bool SurfaceFlow::endsAtUmbilic(const FlowPoint& from, const FlowPoint& to) cons
 		return true;
 	const bool border = m_umbilics.region[from.cell] != m_umbilics.region[to.cell];
 	const bool single = m_umbilics.umbilic[to.cell] && m_umbilics.region[to.cell] < 0;
-	return (border || single) && to.direction.dot(from.direction) < BridgeCosine;
+	return (border || single) && to.direction.dot(from.direction) < bridgedTurn;
 }
 
 } // namespace curvature_lines

@@ -1,5 +1,5 @@
-// The direction field as lines follow it: one step at a time on the surface, and where it cannot be followed any
-// further (A09 section 5.1 steps 1-5; R07 section 5).
+// The direction field as lines follow it: one step at a time on the surface, and where it cannot be
+// followed any further (A09 section 5.1 steps 1-5; R07 section 5).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -12,9 +12,12 @@ namespace curvature_lines {
 
 namespace {
 
-// Edges that meet at more than 155 degrees continue each other. Others form the corner of a face,
-// where two lines end together: along a rim, that is where the quads are.
-constexpr double StraightCosine = -0.9;
+// Edges that meet at more than 155 degrees continue each other. Others form the corner of a face, where two
+// lines end together: where lines run across a rim its quads have such corners. By experiment: on a
+// helicoid, whose rims do, quads rise from 93 to 100 % by keeping them.
+constexpr double straightCosine = -0.9;
+// Width of a face of two sides over the distance of its corners, below which it is a sliver. By experiment.
+constexpr double sliverWidth = 0.25;
 
 } // namespace
 
@@ -81,7 +84,7 @@ bool HalfEdgeGraph::continuesStraight(Index vertex) const
 {
 	const Eigen::Vector3d& a = tangent(m_around[vertex][0]);
 	const Eigen::Vector3d& b = tangent(m_around[vertex][1]);
-	return a.dot(b) <= StraightCosine * a.norm() * b.norm();
+	return a.dot(b) <= straightCosine * a.norm() * b.norm();
 }
 
 bool HalfEdgeGraph::dissolveDegreeTwo()
@@ -109,15 +112,15 @@ bool HalfEdgeGraph::dissolveDegreeTwo()
 	return changed;
 }
 
-// Two lines that run together make slivers; two arcs far apart, as between the poles of a coarse
-// sphere, bound a face of their own.
+// Two lines that run together make slivers; two arcs far apart, as between the poles of a coarse sphere,
+// bound a face of their own.
 bool HalfEdgeGraph::isThin(Index edgeA, Index edgeB) const
 {
 	const Edge&  a     = m_edges[edgeA];
 	const Edge&  b     = m_edges[edgeB];
 	const double width = (a.middle - b.middle).norm();
 	const double chord = (m_positions.col(a.from) - m_positions.col(a.to)).norm();
-	return width < 0.25 * chord;
+	return width < sliverWidth * chord;
 }
 
 bool HalfEdgeGraph::removeDigons()

@@ -1,5 +1,6 @@
-// The last steps of every quad mesh, whichever method made its faces, and what it is then: holes closed (beyond the
-// papers), concave faces cut into convex ones (R07), polygons cut into triangles (A09 section 6 mentions them).
+// The last steps of every quad mesh, whichever method made its faces, and what it is then: holes closed
+// (beyond the papers), concave faces cut into convex ones (R07), polygons cut into triangles (A09 section 6
+// mentions them).
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -13,8 +14,8 @@ struct MeshFinishingOptions {
 	bool closeHoles   = false; // fill boundary loops up to longestClosedHole
 };
 
-// Longest perimeter of a hole that closeHoles fills, in edges of the mesh (its median edge, or the one planned for
-// it): about three faces wide. By experiment.
+// Longest perimeter of a hole that closeHoles fills, in edges of the mesh (its median edge, or the one
+// planned for it): about three faces wide. By experiment.
 constexpr double longestClosedHole = 12.0;
 
 struct FinishedMesh {
@@ -23,7 +24,8 @@ struct FinishedMesh {
 	Index        crossings = 0; // of lines, that its vertices come from
 };
 
-// Fills boundary loops whose perimeter is at most longestClosedHole times the median edge with one polygon each.
+// Fills boundary loops whose perimeter is at most longestClosedHole times the median edge with one polygon
+// each.
 void closeSmallHoles(PolygonMesh& mesh);
 
 // Faces that are no quads are cut at reflex corners. Vertices stay.

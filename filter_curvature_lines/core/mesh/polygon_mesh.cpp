@@ -44,6 +44,85 @@ std::vector<Index> nextCorners(const NeighborLists& faces)
 	return next;
 }
 
+// Used vertices, faces by their number of sides, components.
+void countFaces(const PolygonMesh& mesh, MeshTopology& result)
+{
+	result.faces = mesh.faceCount();
+	DisjointSets      components(mesh.vertexCount());
+	std::vector<char> used(mesh.vertexCount(), 0);
+	for (Index f = 0; f < result.faces; ++f) {
+		const Index sides = mesh.faces[f].size();
+		result.triangles += sides == 3;
+		result.quads += sides == 4;
+		result.largestFace = std::max(result.largestFace, sides);
+		for (Index v : mesh.faces[f]) {
+			used[v] = 1;
+			components.join(mesh.faces[f][0], v);
+		}
+	}
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
+		result.vertices += used[v];
+		result.components += used[v] && components.find(v) == v;
+	}
+}
+
+// Edges by the faces on them, and vertices by the fans of faces around them. Corners of a vertex that share
+// a side belong to one fan. Returns the sides on rims.
+std::vector<FaceSide> countEdges(const PolygonMesh& mesh, DisjointSets& fans, MeshTopology& result)
+{
+	const std::vector<Index>&   vertexOf = mesh.faces.indices;
+	const std::vector<Index>    next     = nextCorners(mesh.faces);
+	const std::vector<FaceSide> sides    = sortedSides(mesh);
+	std::vector<char>           tangled(mesh.vertexCount(), 0); // at an edge that is not manifold
+	std::vector<FaceSide>       rim;
+	for (std::size_t i = 0, j; i < sides.size(); i = j) {
+		for (j = i + 1; j < sides.size() && sides[j].sameEdge(sides[i]); ++j) {
+			for (const Index v : {sides[i].low, sides[i].high}) {
+				const auto cornerAt = [&](const FaceSide& s) {
+					return vertexOf[s.corner] == v ? s.corner : next[s.corner];
+				};
+				fans.join(cornerAt(sides[i]), cornerAt(sides[j]));
+			}
+		}
+		++result.edges;
+		const bool loop = sides[i].low == sides[i].high;
+		const bool manifold =
+			j - i == 1 || (j - i == 2 && sides[i].forward != sides[i + 1].forward);
+		if (loop || !manifold) {
+			++result.nonmanifoldEdges;
+			tangled[sides[i].low] = tangled[sides[i].high] = 1;
+		}
+		if (j - i == 1)
+			rim.push_back(sides[i]);
+	}
+	std::vector<Index> fanCount(mesh.vertexCount(), 0);
+	for (Index c = 0; c < static_cast<Index>(vertexOf.size()); ++c)
+		fanCount[vertexOf[c]] += fans.find(c) == c;
+	for (Index v = 0; v < mesh.vertexCount(); ++v)
+		result.nonmanifoldVertices += fanCount[v] > 1 || tangled[v];
+	return rim;
+}
+
+// A rim is followed from fan to fan.
+Index countLoops(const PolygonMesh& mesh, const std::vector<FaceSide>& rim, DisjointSets& fans)
+{
+	const std::vector<Index> next = nextCorners(mesh.faces);
+	DisjointSets             loops(static_cast<Index>(rim.size()));
+	std::vector<Index>       rimOfFan(next.size(), -1);
+	for (Index e = 0; e < static_cast<Index>(rim.size()); ++e) {
+		for (const Index corner : {rim[e].corner, next[rim[e].corner]}) {
+			Index& other = rimOfFan[fans.find(corner)];
+			if (other >= 0)
+				loops.join(e, other);
+			other = e;
+		}
+	}
+	Index count = 0;
+	for (Index e = 0; e < static_cast<Index>(rim.size()); ++e)
+		count += loops.find(e) == e;
+	return count;
+}
+
 } // namespace
 
 Eigen::Matrix3Xd asColumns(const std::vector<Eigen::Vector3d>& vectors)
@@ -73,73 +152,12 @@ std::vector<std::vector<Index>> faceLoopsOf(const PolygonMesh& mesh)
 MeshTopology topologyOf(const PolygonMesh& mesh)
 {
 	MeshTopology result;
-	result.faces                       = mesh.faceCount();
-	const std::vector<Index>& vertexOf = mesh.faces.indices;
-	const Index               corners  = static_cast<Index>(vertexOf.size());
-	const std::vector<Index>  next     = nextCorners(mesh.faces);
-
-	DisjointSets      components(mesh.vertexCount());
-	std::vector<char> used(mesh.vertexCount(), 0), tangled(mesh.vertexCount(), 0);
-	for (Index f = 0; f < result.faces; ++f) {
-		const Index sides = mesh.faces[f].size();
-		result.triangles += sides == 3;
-		result.quads += sides == 4;
-		result.largestFace = std::max(result.largestFace, sides);
-		for (Index v : mesh.faces[f]) {
-			used[v] = 1;
-			components.join(mesh.faces[f][0], v);
-		}
-	}
-
-	// Corners of a vertex that share a side belong to one fan; a rim is followed from fan to fan.
-	DisjointSets                fans(corners);
-	std::vector<FaceSide>       rim;
-	const std::vector<FaceSide> sides = sortedSides(mesh);
-	for (std::size_t i = 0, j; i < sides.size(); i = j) {
-		for (j = i + 1; j < sides.size() && sides[j].sameEdge(sides[i]); ++j) {
-			for (const Index v : {sides[i].low, sides[i].high}) {
-				const auto cornerAt = [&](const FaceSide& s) {
-					return vertexOf[s.corner] == v ? s.corner : next[s.corner];
-				};
-				fans.join(cornerAt(sides[i]), cornerAt(sides[j]));
-			}
-		}
-		++result.edges;
-		const bool loop = sides[i].low == sides[i].high;
-		const bool manifold =
-			j - i == 1 || (j - i == 2 && sides[i].forward != sides[i + 1].forward);
-		if (loop || !manifold) {
-			++result.nonmanifoldEdges;
-			tangled[sides[i].low] = tangled[sides[i].high] = 1;
-		}
-		if (j - i == 1)
-			rim.push_back(sides[i]);
-	}
-
-	std::vector<Index> fanCount(mesh.vertexCount(), 0);
-	for (Index c = 0; c < corners; ++c)
-		fanCount[vertexOf[c]] += fans.find(c) == c;
-	for (Index v = 0; v < mesh.vertexCount(); ++v) {
-		result.vertices += used[v];
-		result.components += used[v] && components.find(v) == v;
-		result.nonmanifoldVertices += fanCount[v] > 1 || tangled[v];
-	}
-
-	result.boundaryEdges = static_cast<Index>(rim.size());
-	DisjointSets       loops(result.boundaryEdges);
-	std::vector<Index> rimOfFan(corners, -1);
-	for (Index e = 0; e < result.boundaryEdges; ++e) {
-		for (const Index corner : {rim[e].corner, next[rim[e].corner]}) {
-			Index& other = rimOfFan[fans.find(corner)];
-			if (other >= 0)
-				loops.join(e, other);
-			other = e;
-		}
-	}
-	for (Index e = 0; e < result.boundaryEdges; ++e)
-		result.boundaryLoops += loops.find(e) == e;
-
-	result.eulerCharacteristic = result.vertices - result.edges + result.faces;
+	countFaces(mesh, result);
+	DisjointSets                fans(static_cast<Index>(mesh.faces.indices.size()));
+	const std::vector<FaceSide> rim = countEdges(mesh, fans, result);
+	result.boundaryEdges            = static_cast<Index>(rim.size());
+	result.boundaryLoops            = countLoops(mesh, rim, fans);
+	result.eulerCharacteristic      = result.vertices - result.edges + result.faces;
 	return result;
 }
 

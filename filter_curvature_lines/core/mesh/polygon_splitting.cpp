@@ -18,11 +18,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double Forbidden = std::numeric_limits<double>::infinity();
-constexpr double Straight  = 180.0;
-// degrees; a line that ends on another makes 180, which is no flaw
-constexpr double ReflexCorner = 185.0;
-constexpr double LeastAngle   = 2.0; // degrees between a diagonal and the sides at its ends
+constexpr double forbidden =
+	std::numeric_limits<double>::infinity(); // cost of cuts that may not be
+constexpr double halfTurn = 180.0;           // degrees
+// Corners beyond this are reflex (R07 cuts there, and names no tolerance). A line that ends on another
+// makes 180 degrees, which is no flaw; 5 more are for the flattening of a curved face.
+constexpr double reflexCorner = 185.0;
+// Degrees between a diagonal and the sides at its ends: below, the diagonal lies outside for the same reason.
+constexpr double leastAngle = 2.0;
 
 double square(double x)
 {
@@ -57,8 +60,8 @@ public:
 	{
 		const Vector2d u = m_points[c] - m_points[b], v = m_points[a] - m_points[b];
 		const double   degrees =
-			std::atan2(cross(u, v), u.dot(v)) * Straight / 3.14159265358979323846;
-		return degrees < 0.0 ? degrees + 2.0 * Straight : degrees;
+			std::atan2(cross(u, v), u.dot(v)) * halfTurn / 3.14159265358979323846;
+		return degrees < 0.0 ? degrees + 2.0 * halfTurn : degrees;
 	}
 	double corner(Index i) const { return angle(previous(i), i, next(i)); }
 
@@ -93,16 +96,16 @@ private:
 	static double flaw(double degrees, Index corners)
 	{
 		const double right = square(degrees - 90.0);
-		if (corners == 3) // no quad: dearer than any quad of about right angles
+		if (corners == 3) // costs more than any quad of about right angles
 			return square(degrees - 60.0) + square(30.0);
-		return corners == 4 || degrees > ReflexCorner ? right
-		                                              : std::min(right, square(degrees - Straight));
+		return corners == 4 || degrees > reflexCorner ? right
+		                                              : std::min(right, square(degrees - halfTurn));
 	}
 
 	bool pointsInside(Index i, Index j) const
 	{
 		const double part = angle(j, i, next(i));
-		return part > LeastAngle && part < corner(i) - LeastAngle;
+		return part > leastAngle && part < corner(i) - leastAngle;
 	}
 
 	bool crossesSide(Index i, Index j) const
@@ -150,7 +153,7 @@ PolygonSplitter::bestCut(const Face& face, const Error& error, Diagonals diagona
 {
 	const FlatPolygon flat(face, m_vertices, m_normals);
 	Cut               best;
-	best.error = Forbidden;
+	best.error = forbidden;
 	for (Index i = 0; i < flat.size(); ++i) {
 		for (Index j = i + 2; j < flat.size(); ++j) {
 			if ((i == 0 && j == flat.size() - 1) || isEdge(face[i], face[j]))
@@ -199,15 +202,15 @@ void PolygonSplitter::cutLargeFaces()
 {
 	cutWhileAny([](const FlatPolygon& flat, Index i, Index j) {
 		const bool quad = j - i == 3 || flat.size() - (j - i) == 3;
-		return flat.size() >= 6 && quad ? flat.error(i, j) : Forbidden;
+		return flat.size() >= 6 && quad ? flat.error(i, j) : forbidden;
 	});
 }
 
 void PolygonSplitter::splitConcaveFaces()
 {
 	cutWhileAny([](const FlatPolygon& flat, Index i, Index j) {
-		const bool reflex = flat.corner(i) > ReflexCorner || flat.corner(j) > ReflexCorner;
-		return flat.size() > 4 && reflex ? flat.error(i, j) : Forbidden;
+		const bool reflex = flat.corner(i) > reflexCorner || flat.corner(j) > reflexCorner;
+		return flat.size() > 4 && reflex ? flat.error(i, j) : forbidden;
 	});
 }
 
@@ -269,7 +272,7 @@ void PolygonSplitter::pairWithPentagons()
 			if (std::count(pentagon.begin(), pentagon.end(), apex))
 				continue;
 			const Cut best = bestCut(hexagon, [](const FlatPolygon& flat, Index i, Index j) {
-				return j - i == 3 ? flat.error(i, j) : Forbidden;
+				return j - i == 3 ? flat.error(i, j) : forbidden;
 			});
 			Face      first, second;
 			if (!cut(hexagon, best, first, second))

@@ -1,6 +1,7 @@
 // Polygons cut into better ones without moving a vertex: large faces into quads, triangle-pentagon
 // pairs into quads, concave faces into convex ones (R07), any face into triangles. Each keeps V - E
-// + F. SPDX-License-Identifier: GPL-3.0-or-later
+// + F.
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include <unordered_set>

@@ -8,9 +8,11 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double collarWidth = 0.3; // of the way to the centre
-
-}
+// Width of the ring of quads inside a border that visits a vertex twice, over the way to its centre. Any
+// number between 0 and 1 gives the same topology; the ring should not be much narrower than the other
+// faces.
+constexpr double ringWidth = 0.3;
+} // namespace
 
 Polygons::Polygons(const HalfEdgeGraph& graph, const std::vector<std::vector<Index>>& faceLoops)
 {
@@ -41,7 +43,7 @@ void Polygons::addDisk(const std::vector<Index>& border)
 	std::vector<Index> inner;
 	for (Index k = 0; k < n; ++k) {
 		const Index v = border[k], w = border[(k + 1) % n];
-		vertices.push_back(vertices[v] + collarWidth * (center - vertices[v]));
+		vertices.push_back(vertices[v] + ringWidth * (center - vertices[v]));
 		normals.push_back(normals[v]);
 		faces.push_back({v, w, first + (k + 1) % n, first + k});
 		inner.push_back(first + k);

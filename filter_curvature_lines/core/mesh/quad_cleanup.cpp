@@ -17,16 +17,17 @@ namespace {
 using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
-constexpr int rounds = 20;
+constexpr int rounds = 20; // a safeguard: each removes two irregular faces at least, and a few do
 
-struct Gate { // a face entered through its side `side`, from corner `side` to the next
+// A face and one of its sides, from corner `side` to the next.
+struct FaceSide {
 	Index face, side;
 };
 
 struct Strip {
 	// The side every face is left through; but of the last one, unless at a rim, that it is entered through.
-	std::vector<Gate> path;
-	bool              endsAtRim = false;
+	std::vector<FaceSide> path;
+	bool                  endsAtRim = false;
 };
 
 class StripFinder {
@@ -36,7 +37,7 @@ public:
 	{
 		for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
 			for (Index k = 0; k < sizeOf(f); ++k)
-				m_sides.emplace(key(faces[f][k], faces[f][(k + 1) % sizeOf(f)]), Gate{f, k});
+				m_sides.emplace(key(faces[f][k], faces[f][(k + 1) % sizeOf(f)]), FaceSide{f, k});
 	}
 
 	std::vector<Strip> strips(Index longest) const
@@ -81,10 +82,10 @@ public:
 	}
 
 private:
-	using Sides = std::unordered_map<std::uint64_t, Gate>;
+	using Sides = std::unordered_map<std::uint64_t, FaceSide>;
 
 	Index sizeOf(Index f) const { return static_cast<Index>(m_faces[f].size()); }
-	Sides::const_iterator behind(const Gate& g) const
+	Sides::const_iterator behind(const FaceSide& g) const
 	{
 		const Face& face = m_faces[g.face];
 		return m_sides.find(key(face[(g.side + 1) % face.size()], face[g.side]));
@@ -94,7 +95,7 @@ private:
 		return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
 	}
 
-	void walk(Gate at, Index longest, std::vector<Strip>& found) const
+	void walk(FaceSide at, Index longest, std::vector<Strip>& found) const
 	{
 		Strip strip;
 		for (Index quads = 0; quads <= longest;) {
@@ -107,8 +108,8 @@ private:
 					found.push_back(std::move(strip));
 				return;
 			}
-			const Gate in   = next->second;
-			const auto seen = [&](const Gate& g) { return g.face == in.face; };
+			const FaceSide in   = next->second;
+			const auto     seen = [&](const FaceSide& g) { return g.face == in.face; };
 			if (std::any_of(strip.path.begin(), strip.path.end(), seen))
 				return;
 			const Index corners = sizeOf(in.face);
@@ -141,64 +142,85 @@ void splitEnd(const Face& face, Index side, Index m, std::vector<Face>& parts)
 	parts.push_back({face[top], m, face[(side + 1) % 5], face[(side + 2) % 5]});
 }
 
+// A mesh of which strips are split along their middle.
+class StripSplitter {
+public:
+	StripSplitter(const PolygonMesh& mesh, std::vector<char>& onFeature) :
+			m_faces(faceLoopsOf(mesh)), m_onFeature(onFeature)
+	{
+		for (Index v = 0; v < mesh.vertexCount(); ++v) {
+			m_vertices.push_back(mesh.vertices.col(v));
+			m_normals.push_back(mesh.normals.col(v));
+		}
+	}
+
+	// Splits strips without a common face, shortest first. Says whether there were any.
+	bool splitRound(Index longestStrip)
+	{
+		const std::vector<Strip> strips = StripFinder(m_faces, m_vertices).strips(longestStrip);
+		if (strips.empty())
+			return false;
+		std::vector<std::vector<Face>> parts(m_faces.size()); // empty: the face stays
+		for (const Strip& strip : strips)
+			if (std::none_of(strip.path.begin(), strip.path.end(), [&](const FaceSide& side) {
+					return !parts[side.face].empty();
+				}))
+				split(strip, parts);
+		std::vector<Face> next;
+		for (std::size_t f = 0; f < m_faces.size(); ++f)
+			if (parts[f].empty())
+				next.push_back(m_faces[f]);
+			else
+				next.insert(next.end(), parts[f].begin(), parts[f].end());
+		m_faces = std::move(next);
+		return true;
+	}
+
+	PolygonMesh mesh() const { return polygonMesh(m_vertices, m_normals, m_faces); }
+
+private:
+	// A new vertex in the middle of a side.
+	Index middle(const Face& face, Index side)
+	{
+		const Index a = face[side], b = face[(side + 1) % face.size()];
+		m_vertices.push_back(0.5 * (m_vertices[a] + m_vertices[b]));
+		const Vector3d normal = m_normals[a] + m_normals[b];
+		m_normals.push_back(normal.norm() > 0.0 ? normal.normalized() : m_normals[a]);
+		m_onFeature.push_back(m_onFeature[a] && m_onFeature[b]);
+		return static_cast<Index>(m_vertices.size()) - 1;
+	}
+
+	void split(const Strip& strip, std::vector<std::vector<Face>>& parts)
+	{
+		const auto& path = strip.path;
+		Index       m    = middle(m_faces[path[0].face], path[0].side);
+		splitEnd(m_faces[path[0].face], path[0].side, m, parts[path[0].face]);
+		const std::size_t last = path.size() - (strip.endsAtRim ? 0 : 1);
+		for (std::size_t k = 1; k < last; ++k) {
+			const Face& q   = m_faces[path[k].face];
+			const Index out = path[k].side, in = (out + 2) % 4;
+			const Index before = m;
+			m                  = middle(q, out);
+			parts[path[k].face].push_back({q[in], before, m, q[(in + 3) % 4]});
+			parts[path[k].face].push_back({before, q[(in + 1) % 4], q[out], m});
+		}
+		if (!strip.endsAtRim)
+			splitEnd(m_faces[path.back().face], path.back().side, m, parts[path.back().face]);
+	}
+
+	std::vector<Vector3d> m_vertices, m_normals;
+	std::vector<Face>     m_faces;
+	std::vector<char>&    m_onFeature;
+};
+
 } // namespace
 
 PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, Index longestStrip)
 {
-	std::vector<Vector3d> vertices, normals;
-	std::vector<Face>     faces;
-	for (Index v = 0; v < mesh.vertexCount(); ++v) {
-		vertices.push_back(mesh.vertices.col(v));
-		normals.push_back(mesh.normals.col(v));
-	}
-	for (Index f = 0; f < mesh.faceCount(); ++f)
-		faces.emplace_back(mesh.faces[f].begin(), mesh.faces[f].end());
-	const auto middle = [&](const Face& face, Index side) {
-		const Index a = face[side], b = face[(side + 1) % face.size()];
-		vertices.push_back(0.5 * (vertices[a] + vertices[b]));
-		const Vector3d normal = normals[a] + normals[b];
-		normals.push_back(normal.norm() > 0.0 ? normal.normalized() : normals[a]);
-		onFeature.push_back(onFeature[a] && onFeature[b]);
-		return static_cast<Index>(vertices.size()) - 1;
-	};
-
-	for (int round = 0; round < rounds; ++round) {
-		const std::vector<Strip> strips = StripFinder(faces, vertices).strips(longestStrip);
-		if (strips.empty())
-			break;
-		std::vector<char>              used(faces.size(), 0);
-		std::vector<std::vector<Face>> parts(faces.size());
-		for (const Strip& strip : strips) {
-			const auto& path = strip.path;
-			if (std::any_of(
-					path.begin(), path.end(), [&](const Gate& g) { return used[g.face] != 0; }))
-				continue;
-			for (const Gate& gate : path)
-				used[gate.face] = 1;
-			Index m = middle(faces[path[0].face], path[0].side);
-			splitEnd(faces[path[0].face], path[0].side, m, parts[path[0].face]);
-			const std::size_t last = path.size() - (strip.endsAtRim ? 0 : 1);
-			for (std::size_t k = 1; k < last; ++k) {
-				const Face& q   = faces[path[k].face];
-				const Index out = path[k].side, in = (out + 2) % 4;
-				const Index before = m;
-				m                  = middle(q, out);
-				parts[path[k].face].push_back({q[in], before, m, q[(in + 3) % 4]});
-				parts[path[k].face].push_back({before, q[(in + 1) % 4], q[out], m});
-			}
-			if (!strip.endsAtRim)
-				splitEnd(faces[path.back().face], path.back().side, m, parts[path.back().face]);
-		}
-		std::vector<Face> next;
-		for (std::size_t f = 0; f < faces.size(); ++f)
-			if (used[f])
-				next.insert(next.end(), parts[f].begin(), parts[f].end());
-			else
-				next.push_back(faces[f]);
-		faces = std::move(next);
-	}
-
-	return polygonMesh(vertices, normals, faces);
+	StripSplitter splitter(mesh, onFeature);
+	for (int round = 0; round < rounds && splitter.splitRound(longestStrip);)
+		++round;
+	return splitter.mesh();
 }
 
 PolygonMesh cleanUpQuads(

@@ -9,9 +9,12 @@
 namespace curvature_lines {
 
 struct QuadCleanupOptions {
-	Index longestStrip = 3; // quads between the two, or to the rim
-	// Rim edges of triangles, in edges nearby: shorter ones vanish, longer ones only if the triangle finds no
-	// pentagon.
+	// Quads between the two irregular faces, or to the rim. In a prototype, on a torus with evenly spaced
+	// lines, 3 made 94.8 % quads 95.6 %, 12 made them 98 % with 10 % more vertices; with traced lines 3
+	// made 96.5 % 98.3 %.
+	Index longestStrip = 3;
+	// Rim edges of triangles, in edges nearby: shorter ones vanish at once, those up to the longest only if
+	// the triangle finds no pentagon. By experiment on rims that run across the lines (helicoids).
 	double shortestRimEdge = 0.25, longestRimEdge = 1.0;
 };
 
@@ -20,9 +23,9 @@ struct QuadCleanupOptions {
 PolygonMesh cleanUpQuads(
 	const PolygonMesh& mesh, std::vector<char>& onFeature, const QuadCleanupOptions& options = {});
 
-// A pentagon is taken through the side opposite its flattest corner, a triangle through any side, on through
-// opposite sides of quads until another one or a rim: the strip is split in two along its middle. A pentagon with
-// one side on a rim is taken through that. Shortest first.
+// A pentagon is taken through the side opposite its flattest corner, a triangle through any side, on
+// through opposite sides of quads until another one or a rim: the strip is split in two along its middle. A
+// pentagon with one side on a rim is taken through that. Shortest first.
 PolygonMesh insertStrips(const PolygonMesh& mesh, std::vector<char>& onFeature, Index longestStrip);
 
 } // namespace curvature_lines

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using Face = std::vector<Index>;
 
-constexpr double straight = 0.8; // cosine of a rim's turn, below which it is a corner
+// Cosine of a rim's turn at a vertex, 37 degrees: beyond, the vertex is a corner and stays. By experiment.
+constexpr double straight = 0.8;
 
 std::uint64_t key(Index a, Index b)
 {

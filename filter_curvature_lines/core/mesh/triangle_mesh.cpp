@@ -15,6 +15,8 @@ namespace curvature_lines {
 
 namespace {
 
+// Bounds of the weights of differences along edges: the matrices stay positive definite at obtuse triangles
+// and of moderate condition at slivers. Not varied.
 constexpr double leastCotangent = 0.05, largestCotangent = 3.0;
 
 // One side of a triangle.

@@ -18,10 +18,11 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-// CGAL takes the best triangle first, and of equally good ones that with the lower address. On a grid many are
-// equally good: points are shifted by up to so much of the longest edge. And triangles of one tetrahedron may
-// share their smallest empty ball, its own: radii are scaled by so little more than 1. What a point or a
-// triangle gets is told by its place alone.
+// CGAL takes the triangle with the smallest empty ball first, and of equal ones that with the lower
+// address, so that results would change from run to run. On a grid many balls are equal: points are shifted
+// by up to this share of the longest edge. Triangles of one tetrahedron may share its ball: their radii are
+// multiplied by 1 plus up to this. Both follow from a hash of the coordinates alone. Far below what matters
+// to the surface, far above rounding errors.
 constexpr double pointTieBreak = 1e-6, triangleTieBreak = 1e-9;
 
 std::uint64_t hashOf(double x, double y, double z)
@@ -34,9 +35,11 @@ std::uint64_t hashOf(double x, double y, double z)
 	return hash;
 }
 
-// Where two sheets come as near to each other as the points of one, the smallest ball may join them. By how much
-// the priority of such a triangle is delayed: rims of thin blades are still made of some, but across an open gap
-// only the bottom of a groove is. (Cow, angel, armadillo: factors of 2 to 100 each.)
+// Where two sheets come as near to each other as the points of one, the smallest ball may join them.
+// Normals whose dot product is below `opposing` mean that two points are of different sheets; the radius of
+// such a triangle counts times `acrossGap` if it spans an open gap, where only the bottom of a groove needs
+// it, or times `acrossBlade` if it goes through a thin part, whose rims do. Chosen on cow, angel and
+// armadillo: factors of 2 to 100 each, and limits of 0, -.3 and -.6.
 constexpr double opposing = -0.3, acrossGap = 30.0, acrossBlade = 5.0;
 
 // CGAL's own priority, the radius of the smallest empty ball, unless an edge is too long or joins two sheets.
@@ -63,7 +66,7 @@ struct SheetPriority {
 		for (int a = 1; a <= 3; ++a) {
 			const auto p = cell->vertex((facet + a) % 4);
 			const auto q = cell->vertex((facet + a % 3 + 1) % 4);
-			// When all points lie in a plane, CGAL adds a vertex that has no number.
+			// When all points lie in a plane CGAL adds a vertex of its own, which has no number.
 			const auto count = static_cast<std::size_t>(longest.size());
 			if (p->id() >= count || q->id() >= count)
 				return front.infinity();

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using Pair = std::pair<Index, Index>;
 
-constexpr int mostFlips = 6; // for one edge
+// Edges flipped to bring in one crease edge. By experiment.
+constexpr int mostFlips = 6;
 
 Pair unordered(Index a, Index b)
 {
@@ -79,7 +80,7 @@ void insertMissing(
 	}
 }
 
-// Flips the edge opposite a that b lies behind, until a and b are joined. Says whether they are.
+// Flips the edge opposite a that b lies behind, until a and b are joined. Returns whether they are.
 bool joinByFlips(
 	const Eigen::Matrix3Xd& points,
 	Index                   a,

@@ -1,5 +1,5 @@
-// Creases that the advancing front passed over: points on them stick out of a cloud that denoising rounded, and the
-// front closes below. They are put in, and edges that cross a crease are flipped.
+// Creases that the advancing front passed over: points on them stick out of a cloud that denoising rounded,
+// and the front closes below. They are put in, and edges that cross a crease are flipped.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

@@ -17,24 +17,29 @@ namespace {
 using Eigen::Vector3d;
 using SparseComplex = Eigen::SparseMatrix<Complex>;
 
-constexpr double quarter    = 0.5 * double(EIGEN_PI);
-constexpr double sureErrors = 3.0; // k1 - k2 below so many standard errors tells no direction
-// A direction whose k1 - k2 is this many errors is smoothed over about a cell of the mesh; the more exact it
-// is, the less, down to a third of a cell.
+constexpr double quarter = 0.5 * double(EIGEN_PI);
+// Where k1 - k2 is below so many of its standard errors no direction is known: a 3-sigma test.
+constexpr double sureErrors = 3.0;
+// A direction whose k1 - k2 is this many errors is smoothed over about a cell of the mesh; the more exact
+// it is, the less, down to 1 / sqrt(10), a third of a cell. Chosen among seven settings on noisy
+// ellipsoids, seeds 1 to 10, where over-smoothing and noise both turn mesh edges near the umbilics.
 constexpr double cellErrors = 18.0;
 constexpr double mostTrust  = 10.0;
-// Of a component. Where directions are known in less than one cell of the mesh, they are chance: four of 6316
-// points of a noisy sphere would bend the whole field, and 94 lines end in it instead of 5.
+// Of a component, in cells of the mesh. Where directions are known in less than one, they are chance: four
+// of 6316 points of a noisy sphere would bend the whole field, and 94 lines end in it instead of 5.
 constexpr double fewestCells = 1.0;
-// What errors leave out, such as corners nearby: a difference no estimate tells from flat, over the diagonal.
+// Added to the standard error, in curvatures over the diagonal: what errors leave out, such as corners
+// nearby. By experiment: a smaller difference cannot be distinguished from flat.
 constexpr double leastError = 0.02;
-// |k1 - k2| over the RMS curvature, below which a point is umbilic
-constexpr double leastRatio      = 0.05;
+// |k1 - k2| over the RMS of both, below which a point is umbilic: about the 5 % of A09's ratio .95.
+constexpr double leastRatio = 0.05;
+// Numerical: keeps the matrix definite where nothing is known; the shift of the inverse iteration, over the
+// weights (about 1), and its number of steps.
 constexpr double regularization  = 1e-9;
 constexpr double eigenShift      = 1e-8;
 constexpr int    eigenIterations = 40;
 
-// Direction of the arm a of a cross at one end of an edge, seen from the frame at the other: angle.
+// Angle of the arm d1 of the cross at one end of an edge, as seen in the frame at the other end.
 double angleAcross(const CrossField& field, Index from, Index to)
 {
 	const Vector3d d =

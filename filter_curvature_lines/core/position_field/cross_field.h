@@ -24,7 +24,7 @@ struct CrossField {
 	Eigen::Matrix3Xd normals, d1,
 		d2;                     // 3 x V: arms of the cross, d2 = n x d1; which two is arbitrary
 	std::vector<char> onCrease; // V
-	// Per edge: the frame at `to` sees a direction turned by so many quarters against the frame at `from`:
+	// Per edge: the frame at `to` is turned by so many quarters against the frame at `from` (period jump):
 	// z_to = i^turns z_from.
 	std::vector<std::uint8_t> turns;
 	// Per triangle: the sum of the turns around it, 0..3; not 0: a singular point of the field.

@@ -13,11 +13,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double snapCosine    = 0.906; // of 25 degrees
-constexpr double snapShare     = 0.7;   // of the vertices of a side
+// A rim is taken for a line of curvature, and the crosses are turned along it, if at this share of the
+// vertices of a side its tangent is within 25 degrees (cosine) of an arm. By experiment on cylinders, whose
+// rims are, and helicoids, whose are not.
+constexpr double snapCosine = 0.906;
+constexpr double snapShare  = 0.7;
+// Weight of the direction along a rim or crease; the others are at most about 1: it is held.
 constexpr double featureWeight = 1e3;
-constexpr double creaseCorner  = 0.6; // cosine of the turn, as of rims
-constexpr double arm           = 0.9; // cosine of a tangent with the arm it is thought to follow
+// Cosine of a crease's turn at a vertex, 53 degrees: beyond, the vertex is a corner; as of rims (rims.cpp).
+constexpr double creaseCorner = 0.6;
+// Cosine of a tangent with the arm that runs along it, 25 degrees: where neither does, no phase is pinned.
+constexpr double armCosine = 0.9;
 
 bool isAlongArm(const Vector3d& tangent, const DirectionGuide& guide, Index v)
 {
@@ -133,7 +139,7 @@ PhasePins featurePins(const FeatureAlignment& alignment, const CrossField& field
 		}
 		const Vector3d t  = alignment.tangents.col(v);
 		const double   c0 = std::abs(t.dot(field.d1.col(v))), c1 = std::abs(t.dot(field.d2.col(v)));
-		if (std::max(c0, c1) > arm)
+		if (std::max(c0, c1) > armCosine)
 			pins.fixed[c0 > c1 ? 1 : 0][v] = 1;
 	}
 	return pins;

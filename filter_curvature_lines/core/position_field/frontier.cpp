@@ -17,28 +17,36 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Lengths in spacings here: 1 / sqrt(density).
-// Of the likelihood, wide at first: it climbs from inside to where the points end, and strays beyond a gap do not
-// pull it on.
-constexpr double blurs[]         = {0.7, 0.35, 0.2};
-constexpr double narrowestWindow = 20.0;
-constexpr double widestWindow    = 155.0;
+// Lengths are in spacings here: 1 / sqrt(density). Chosen on helicoids, seeds 1 to 20 (benchmarks/quad_mesh.py
+// open), unless said otherwise.
 
-constexpr double windowGrowth = 1.5;
-constexpr double strays       = 1e-6; // how often a point lies anywhere
-constexpr double agreement    = 6.0;  // of windows, in standard errors
-constexpr double sufficient   = 0.1;  // error, beyond which a wider window only risks more
-constexpr Index  fewestPoints = 8;
+// Blur of the likelihood, added to that of the sample, in turn: from a wide one it climbs from inside to
+// where the points end, and strays beyond a gap do not pull it on; the last one decides the result.
+constexpr double blurs[] = {0.7, 0.35, 0.2};
+// Windows along the curve: the first one, its growth, and the longest one.
+constexpr double narrowestWindow = 20.0;
+constexpr double windowGrowth    = 1.5;
+constexpr double widestWindow    = 155.0;
+// Windows agree whose values differ by no more than so many standard errors (the constant of Lepski's
+// rule); and a standard error of the value at which no wider window is tried.
+constexpr double agreement  = 6.0;
+constexpr double sufficient = 0.1;
+// How often a point lies anywhere: a stray costs log(1e-6), and no more the farther it lies.
+constexpr double strays = 1e-6;
+// Of a window: below, three coefficients are told by chance.
+constexpr Index fewestPoints = 8;
+// Newton's method: safeguards, and the longest step in blurs.
 constexpr int    mostSteps    = 60;
 constexpr int    mostHalvings = 12;
-constexpr double longestStep  = 1.0; // blurs
-// A blur that the sample does not have puts the end of an even one where the normal distribution function is
-// 1 / e: this many blurs further in.
+constexpr double longestStep  = 1.0;
+// A blur that the sample does not have puts the end of an even sample where the normal distribution
+// function is 1 / e, so many blurs inside the end: Phi(-0.337) = 1 / e.
 constexpr double blurBias = 0.337;
-constexpr double certain  = 6.0; // blurs inside: the density is full
+// Points so many blurs inside have a term of less than 1e-9: it is left out.
+constexpr double certain = 6.0;
 
-// log(Phi(z) + strays) and its derivatives, those of the logarithm as if the point's being a stray were known, by
-// how probable it is that it is none.
+// log(Phi(z) + strays) and its derivatives, those of the logarithm as if the point's being a stray were
+// known, by how probable it is that it is none.
 struct PointTerm {
 	double value = 0.0, first = 0.0, second = 0.0, third = 0.0;
 	explicit PointTerm(double z)
@@ -94,8 +102,8 @@ struct Likelihood {
 		return c;
 	}
 
-	// What the points tell about the coefficients, and a trace for those they tell nothing about. Adds to the
-	// gradient what is theirs of it.
+	// Fisher information of the points about the coefficients, and a little for those they do not
+	// determine. Adds to the gradient what is theirs of it.
 	Matrix3d information(const Vector3d& c, Vector3d* gradient = nullptr) const
 	{
 		Matrix3d sum = Matrix3d::Zero();

@@ -16,11 +16,11 @@ struct Frontier {
 };
 
 // Points (s, x), 2 x N, fill x <= x(s) with `density` points per area, their x off by `noise` (standard
-// deviation); lengths in any unit. Those with s in [begin, end] count, 0 among them: of the windows there around
-// 0 the widest in which a parabola agrees with those of narrower ones within their errors (Lepski's rule), so
-// that it is long where the frontier is plain and short where it winds, and no longer than its error needs: at
-// the end of a window that is twice the one in its middle. A few strays beyond the frontier do no harm. Nothing
-// where too few points lie to tell.
+// deviation); lengths in any unit. Those with s in [begin, end] count, 0 among them: of the windows there
+// around 0 the widest in which a parabola agrees with those of narrower ones within their errors (Lepski's
+// rule), so that it is long where the frontier is plain and short where it winds, and no longer than its
+// error needs: at the end of a window that is twice the one in its middle. A few strays beyond the frontier
+// do no harm. Nothing where too few points lie.
 std::optional<Frontier>
 fitFrontier(const Eigen::Matrix2Xd& points, double begin, double end, double density, double noise);
 

@@ -15,11 +15,17 @@ namespace {
 using Eigen::Vector3d;
 using SparseReal = Eigen::SparseMatrix<double>;
 
-// of the RMS curvature: flat parts have no preferred direction
+// Added to curvatures before their ratio is taken, over their RMS: flat parts have no preferred direction.
+// By experiment.
 constexpr double curvatureFloor = 0.1;
-constexpr double stiffness      = 1e-3; // of the log density; keeps its solve well-posed
-const double     mostCorrection = std::log(2.0);
-constexpr double creaseShare    = 1e-3; // weight of a crease corner in the mean of a triangle
+// Weight of the gradient of the correction (logarithm of the density): keeps its solve well-posed. By
+// experiment.
+constexpr double stiffness = 1e-3;
+// The correction changes the density by no more than a factor of 2: without a bound cells shrink at
+// singular points of spheres, and spacing grows at the tips of ellipsoids.
+const double mostCorrection = std::log(2.0);
+// Weight of a crease vertex in the mean of a triangle: its cross lies between two faces and is wrong for both.
+constexpr double creaseShare = 1e-3;
 
 // |normal curvature| along both arms of the cross at every vertex, floored.
 LineDensity

@@ -13,13 +13,16 @@ struct LineDensityOptions {
 	double targetVertices = 1600.0;
 	// largest ratio of the spacings of both families that curvature asks for
 	double anisotropy = 1.5;
-	double evenness   = 3.0; // how much uneven spacing costs against lines that end
+	// How much uneven spacing costs against lines that end. In a prototype 100, 30, 10, 1 left 44, 2, 0, 0
+	// ends on a torus, and at 1 an ellipsoid was twice as far from its mesh as at 10; 3 rather than 5 on
+	// noisy ellipsoids, seeds 1 to 10.
+	double evenness = 3.0;
 };
 
 // Row f: lines of family f per length, met when walking along d1 (f = 0) or d2 (f = 1).
 using LineDensity = Eigen::Matrix2Xd; // 2 x V
 
-// Curvature only tells the anisotropy.
+// The curvature enters in the anisotropy only.
 LineDensity lineDensity(
 	const Scaffold&           scaffold,
 	const CrossField&         field,
@@ -31,8 +34,8 @@ double
 expectedVertices(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
 
 // The increase of the two phases (real: family 0, imaginary: family 1) along every edge, in lines, in the
-// frame at its start. A crease vertex, whose frame is tilted against the faces beside it, is left out
-// for edges that leave the crease.
+// frame at its start. Of an edge that leaves a crease only the other end counts: the frame on the crease is
+// tilted against the faces beside it.
 Eigen::VectorXcd
 expectedRise(const TriangleMesh& mesh, const CrossField& field, const LineDensity& density);
 

@@ -19,13 +19,19 @@ using SparseReal = Eigen::SparseMatrix<double>;
 using Solver     = Eigen::SimplicialLDLT<SparseReal, Eigen::Lower>;
 using Triplet    = Eigen::Triplet<double>;
 
-constexpr double fullTurn        = 2.0 * EIGEN_PI;
-constexpr double shift           = 1e-7; // over the mean diagonal
+constexpr double fullTurn = 2.0 * EIGEN_PI;
+// Inverse iteration: the shift over the mean diagonal, and its steps. About 15 steps do on most clouds; 30
+// are safe.
+constexpr double shift           = 1e-7;
 constexpr int    eigenIterations = 30;
-constexpr double pinWeight       = 100.0; // over the largest diagonal, in the start
-constexpr double hardPinWeight   = 1e4;   // and in the fit
-constexpr double gauge           = 1e-8;
-// weight of triangles where a line ends or the field is singular
+// Weights of pins over the largest diagonal, in the start and in the fit: there the pins are exact integers
+// afterwards anyway.
+constexpr double pinWeight     = 100.0;
+constexpr double hardPinWeight = 1e4;
+// Weight that holds the phases where they are, over the mean diagonal: the fit leaves a constant free.
+constexpr double gauge = 1e-8;
+// Weight of triangles where a line ends or the field is singular: there the phase has no gradient like the
+// field's.
 constexpr double unreliable = 1e-6;
 
 Complex rounded(const Complex& z)
@@ -172,7 +178,7 @@ Eigen::VectorXcd periodicStart(
 	return phase;
 }
 
-Eigen::VectorXcd endsOf(
+Eigen::VectorXcd unwrappedEnds(
 	const TriangleMesh&     mesh,
 	const CrossField&       field,
 	const Eigen::VectorXcd& rise,
@@ -200,8 +206,8 @@ Complex increase(
 	return mesh.isForward(triangle, c) ? along : -turned(along, field.turns[e]);
 }
 
-// Lines that end in the triangle: what is missing when the phases are unwrapped around it.
-Complex missing(
+// Lines that end in the triangle: what is lineEndsIn when the phases are unwrapped around it.
+Complex lineEndsIn(
 	const TriangleMesh&  mesh,
 	const CrossField&    field,
 	const PositionField& positions,
@@ -214,6 +220,74 @@ Complex missing(
 	return rounded(sum);
 }
 
+// A linear least-squares problem for the phases: unknown 2 v + f is the phase of family f at vertex v.
+struct PhaseFit {
+	std::vector<Triplet> entries; // of the lower half
+	Eigen::VectorXd      right, diagonal;
+
+	explicit PhaseFit(const TriangleMesh& mesh) :
+			right(Eigen::VectorXd::Zero(2 * mesh.vertexCount())),
+			diagonal(Eigen::VectorXd::Zero(2 * mesh.vertexCount()))
+	{
+		entries.reserve(18 * mesh.triangleCount() + 2 * mesh.vertexCount());
+	}
+
+	// The gradient of family f (seen from corner 0) should be the triangle's target. The phase at corner c
+	// in the frame of corner 0 is i^-turns phase + whole[c].
+	void addGradient(
+		const TriangleField&          tri,
+		const Triangle&               corners,
+		int                           f,
+		const std::array<Complex, 3>& whole,
+		double                        weight,
+		double                        drift)
+	{
+		const double   nu     = tri.target[f].norm() + 1e-300;
+		const Vector3d across = tri.target[f] / nu, along = tri.normal.cross(across);
+		const Vector3d a = tri.gradient.transpose() * across, b = tri.gradient.transpose() * along;
+		const Eigen::Matrix3d K = weight * (a * a.transpose() + drift * b * b.transpose());
+		Vector3d              unwrapped, sign;
+		std::array<Index, 3>  unknown;
+		for (int c = 0; c < 3; ++c) {
+			const FamilyImage image = familyBehind(tri.turns[c], f);
+			unknown[c]              = 2 * corners[c] + image.family;
+			sign[c]                 = image.sign;
+			unwrapped[c]            = component(whole[c], f);
+		}
+		const Vector3d pull = weight * nu * a - K * unwrapped;
+		for (int i = 0; i < 3; ++i) {
+			right[unknown[i]] += sign[i] * pull[i];
+			diagonal[unknown[i]] += K(i, i);
+			for (int j = 0; j < 3; ++j)
+				if (unknown[i] >= unknown[j])
+					entries.emplace_back(unknown[i], unknown[j], sign[i] * sign[j] * K(i, j));
+		}
+	}
+
+	// Pinned phases at the nearest integer; the others lightly where they are.
+	void addPins(const PhasePins& pins, const Eigen::VectorXcd& phase)
+	{
+		const double soft = gauge * diagonal.mean(), hard = hardPinWeight * diagonal.maxCoeff();
+		for (Index i = 0; i < right.size(); ++i) {
+			const double x0     = component(phase[i >> 1], i & 1);
+			const bool   pinned = pins.fixed[i & 1][i >> 1];
+			const double weight = pinned ? hard : soft;
+			entries.emplace_back(i, i, weight);
+			right[i] += weight * (pinned ? std::round(x0) : x0);
+		}
+	}
+
+	// Empty where there is no solution.
+	Eigen::VectorXd solution() const
+	{
+		SparseReal matrix(right.size(), right.size());
+		matrix.setFromTriplets(entries.begin(), entries.end());
+		const Solver          solver(matrix);
+		const Eigen::VectorXd x = solver.solve(right);
+		return solver.info() == Eigen::Success && x.allFinite() ? x : Eigen::VectorXd();
+	}
+};
+
 // One linear least-squares fit of the phases with the whole numbers of all triangles held.
 void fit(
 	const TriangleMesh&         mesh,
@@ -223,64 +297,28 @@ void fit(
 	const PositionFieldOptions& options,
 	PositionField&              positions)
 {
-	const Index          n = mesh.vertexCount();
-	std::vector<Triplet> entries;
-	entries.reserve(18 * mesh.triangleCount() + 2 * n);
-	Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * n), diagonal = Eigen::VectorXd::Zero(2 * n);
+	PhaseFit problem(mesh);
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
-		const Triangle&     corners = mesh.triangles()[t];
-		const TriangleField tri     = triangleField(mesh, field, density, t);
-		const Complex       lost    = missing(mesh, field, positions, t);
-		const Complex       w0      = positions.phase[corners[0]];
-		// The phase at corner c in the frame of corner 0 is i^-turns phase + whole[c].
-		std::array<Complex, 3> whole = {0.0, 0.0, 0.0};
-		const Complex          d01   = increase(mesh, field, positions, t, 0);
+		const Triangle&        corners = mesh.triangles()[t];
+		const TriangleField    tri     = triangleField(mesh, field, density, t);
+		const Complex          lost    = lineEndsIn(mesh, field, positions, t);
+		const Complex          w0      = positions.phase[corners[0]];
+		std::array<Complex, 3> whole   = {0.0, 0.0, 0.0};
+		const Complex          d01     = increase(mesh, field, positions, t, 0);
 		const Complex          d20 = turned(increase(mesh, field, positions, t, 2), -tri.turns[2]);
 		whole[1] = rounded(w0 + d01 - turned(positions.phase[corners[1]], -tri.turns[1]));
 		whole[2] = rounded(w0 - d20 - turned(positions.phase[corners[2]], -tri.turns[2]));
 		for (int f = 0; f < 2; ++f) {
-			const bool     bad    = field.index[t] != 0 || component(lost, f) != 0.0;
-			const double   weight = tri.area * (bad ? unreliable : 1.0);
-			const double   nu     = tri.target[f].norm() + 1e-300;
-			const Vector3d across = tri.target[f] / nu, along = tri.normal.cross(across);
-			const Vector3d a = tri.gradient.transpose() * across,
-						   b = tri.gradient.transpose() * along;
-			const Eigen::Matrix3d K =
-				weight * (a * a.transpose() + options.fitDrift * b * b.transpose());
-			Vector3d             unwrapped;
-			std::array<Index, 3> unknown;
-			Vector3d             sign;
-			for (int c = 0; c < 3; ++c) {
-				const FamilyImage image = familyBehind(tri.turns[c], f);
-				unknown[c]              = 2 * corners[c] + image.family;
-				sign[c]                 = image.sign;
-				unwrapped[c]            = component(whole[c], f);
-			}
-			const Vector3d pull = weight * nu * a - K * unwrapped;
-			for (int i = 0; i < 3; ++i) {
-				right[unknown[i]] += sign[i] * pull[i];
-				diagonal[unknown[i]] += K(i, i);
-				for (int j = 0; j < 3; ++j)
-					if (unknown[i] >= unknown[j])
-						entries.emplace_back(unknown[i], unknown[j], sign[i] * sign[j] * K(i, j));
-			}
+			const bool   bad    = field.index[t] != 0 || component(lost, f) != 0.0;
+			const double weight = tri.area * (bad ? unreliable : 1.0);
+			problem.addGradient(tri, corners, f, whole, weight, options.fitDrift);
 		}
 	}
-	const double soft = gauge * diagonal.mean(), hard = hardPinWeight * diagonal.maxCoeff();
-	for (Index i = 0; i < 2 * n; ++i) {
-		const double x0     = component(positions.phase[i >> 1], i & 1);
-		const bool   pinned = pins.fixed[i & 1][i >> 1];
-		const double weight = pinned ? hard : soft;
-		entries.emplace_back(i, i, weight);
-		right[i] += weight * (pinned ? std::round(x0) : x0);
-	}
-	SparseReal matrix(2 * n, 2 * n);
-	matrix.setFromTriplets(entries.begin(), entries.end());
-	const Solver          solver(matrix);
-	const Eigen::VectorXd x = solver.solve(right);
-	if (solver.info() != Eigen::Success || !x.allFinite())
+	problem.addPins(pins, positions.phase);
+	const Eigen::VectorXd x = problem.solution();
+	if (x.size() == 0)
 		return;
-	for (Index v = 0; v < n; ++v) {
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
 		Vector3d z(x[2 * v], x[2 * v + 1], 0.0);
 		for (int f = 0; f < 2; ++f)
 			if (pins.fixed[f][v])
@@ -303,13 +341,13 @@ PositionField positionField(
 		return positions;
 	const Eigen::VectorXcd rise = expectedRise(mesh, field, density);
 	positions.phase             = periodicStart(mesh, field, rise, pins, options);
-	positions.end               = endsOf(mesh, field, rise, positions.phase);
+	positions.end               = unwrappedEnds(mesh, field, rise, positions.phase);
 	for (int k = 0; k < options.rounds; ++k) {
 		fit(mesh, field, density, pins, options, positions);
-		positions.end = endsOf(mesh, field, rise, positions.phase);
+		positions.end = unwrappedEnds(mesh, field, rise, positions.phase);
 	}
 	for (Index t = 0; t < mesh.triangleCount(); ++t)
-		positions.lineEnds += field.index[t] == 0 && missing(mesh, field, positions, t) != 0.0;
+		positions.lineEnds += field.index[t] == 0 && lineEndsIn(mesh, field, positions, t) != 0.0;
 	return positions;
 }
 

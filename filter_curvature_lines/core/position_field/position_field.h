@@ -19,10 +19,13 @@ struct PhasePins {
 };
 
 struct PositionFieldOptions {
-	// cost of drifting along a line over that of uneven spacing: in the start
+	// Cost of drifting sideways along a line over that of uneven spacing, in the start and in the fit; and
+	// rounds of the fit, integers found anew in each. In a prototype on a noisy ellipsoid: 1, 10, 100 in
+	// the start change nothing; 1, 30, 300 in the fit give 1.43, 1.21, 1.17 degrees; 0, 1, 2 rounds 1.06,
+	// .80, .80.
 	double startDrift = 10.0;
-	double fitDrift   = 100.0; // and in the fit
-	int    rounds     = 2;     // of the fit, jumps found anew in each
+	double fitDrift   = 100.0;
+	int    rounds     = 2;
 };
 
 struct PositionField {

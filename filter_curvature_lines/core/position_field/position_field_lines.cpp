@@ -17,12 +17,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double sameFace      = 0.8; // dot product of normals
-constexpr Index  closestAsked  = 16;
-constexpr double unknownWeight = 1e-9; // for the arms as they are: the crosses are turned alike
+// Points whose normals are within 37 degrees of the triangles' (dot product) are of their face; the nearest
+// such among so many is taken. By experiment.
+constexpr double sameFace     = 0.8;
+constexpr Index  closestAsked = 16;
+// Weight with which the arms d1 are taken for family 1 everywhere: decides only where nothing else does.
+constexpr double unknownWeight = 1e-9;
 
 // Along the arms d1 of the crosses: how much they are the directions of family 1 (+1) and not 2 (-1), at every
-// vertex. Where nothing tells, as around it; across an odd number of quarter turns the sign changes.
+// vertex. Where nothing is known, as around it; across an odd number of quarter turns the sign changes.
 Eigen::VectorXd
 familyOfArms(const Scaffold& scaffold, const CrossField& field, const CurvatureField& curvature)
 {
@@ -173,30 +176,26 @@ Index closestOnSide(
 	return near[0];
 }
 
-} // namespace
-
-LineNetwork linesOf(
-	const SurfaceCurves&  curves,
-	const Scaffold&       scaffold,
-	const CrossField&     field,
-	const PointCloud&     cloud,
-	const CurvatureField& curvature)
+// Number of the first point of every edge, and after the last the number of all.
+std::vector<Index> firstPoints(const SurfaceCurves& curves)
 {
-	const TriangleMesh& mesh = scaffold.mesh;
-	std::vector<Index>  first(mesh.edgeCount() + 1, 0);
-	for (Index e = 0; e < mesh.edgeCount(); ++e)
-		first[e + 1] = first[e] + static_cast<Index>(curves.points[e].size());
-	const Eigen::VectorXd          arms = familyOfArms(scaffold, field, curvature);
-	std::vector<std::vector<Link>> joined(first.back());
-	for (const SurfaceCurves::Chord& chord : curves.chords) {
-		const Index a    = first[chord.a.edge] + chord.a.point,
-					b    = first[chord.b.edge] + chord.b.point;
-		const int family = familyOf(chord, curves, mesh, field, arms);
-		joined[a].push_back({b, family});
-		joined[b].push_back({a, family});
-	}
-	std::vector<Index>         edgeOf(joined.size());
-	std::vector<SurfaceSample> samples(joined.size());
+	std::vector<Index> first = {0};
+	for (const std::vector<EdgePoint>& points : curves.points)
+		first.push_back(first.back() + static_cast<Index>(points.size()));
+	return first;
+}
+
+// The points of the curves on the surface of the cloud; those on rims and creases stay where the mesh has
+// them.
+std::vector<SurfaceSample> projectedPoints(
+	const SurfaceCurves&      curves,
+	const std::vector<Index>& first,
+	const Scaffold&           scaffold,
+	const PointCloud&         cloud,
+	const CurvatureField&     curvature)
+{
+	const TriangleMesh&        mesh = scaffold.mesh;
+	std::vector<SurfaceSample> samples(first.back());
 	const NeighborSearch       search(cloud.positions);
 	parallelFor(mesh.edgeCount(), {}, [&](Index e) {
 		const Vector3d side = sideOf(mesh, e);
@@ -204,7 +203,6 @@ LineNetwork linesOf(
 			const Vector3d at =
 				mesh.vertices.col(mesh.edges()[e].from) + curves.points[e][p].t * mesh.along(e);
 			SurfaceSample& sample = samples[first[e] + p];
-			edgeOf[first[e] + p]  = e;
 			sample                = projectToSurface(
                 cloud,
                 curvature,
@@ -212,27 +210,32 @@ LineNetwork linesOf(
                 closestOnSide(cloud, search, at, side),
                 ProjectionKind::Mixed);
 			if (mesh.edges()[e].isRim() || scaffold.creaseEdge[e])
-				sample.position = at; // as the mesh has it
+				sample.position = at;
 		}
 	});
-	const auto endAt = [&](Index node) {
-		const TriangleMesh::Edge& edge = mesh.edges()[edgeOf[node]];
-		if (edge.isRim())
-			return LineEnd::Rim;
-		if (scaffold.creaseEdge[edgeOf[node]])
-			return LineEnd::Crease;
-		return field.index[edge.left] != 0 || field.index[edge.right] != 0 ? LineEnd::Umbilic
-		                                                                   : LineEnd::Line;
-	};
+	return samples;
+}
 
-	std::vector<Chain> chains;
-	for (const Chain& whole : chainsOf(joined))
-		for (Chain& part : cut(whole))
-			chains.push_back(std::move(part));
+// Why a curve ends at a point of an edge.
+LineEnd endAt(Index e, const Scaffold& scaffold, const CrossField& field)
+{
+	const TriangleMesh::Edge& edge = scaffold.mesh.edges()[e];
+	if (edge.isRim())
+		return LineEnd::Rim;
+	if (scaffold.creaseEdge[e])
+		return LineEnd::Crease;
+	return field.index[edge.left] != 0 || field.index[edge.right] != 0 ? LineEnd::Umbilic
+	                                                                   : LineEnd::Line;
+}
+
+// `endOf` tells why a chain that is not closed ends at a node.
+template<class EndOf>
+LineNetwork networkOf(
+	const std::vector<Chain>& chains, const std::vector<SurfaceSample>& samples, const EndOf& endOf)
+{
 	Index count = 0;
 	for (const Chain& chain : chains)
 		count += static_cast<Index>(chain.nodes.size());
-
 	LineNetwork lines;
 	lines.vertices.resize(3, count);
 	lines.normals.resize(3, count);
@@ -245,17 +248,47 @@ LineNetwork linesOf(
 			lines.normals.col(written)  = samples[n].normal;
 			lines.curvature[written++]  = family == 1 ? samples[n].k1 : samples[n].k2;
 		}
-		const auto end = [&](Index node) {
-			if (chain.closed)
-				return LineEnd::None;
-			return joined[node].size() == 2 ? LineEnd::Umbilic : endAt(node);
-		};
+		const auto end = [&](Index node) { return chain.closed ? LineEnd::None : endOf(node); };
 		lines.offsets.push_back(written);
 		lines.family.push_back(family);
 		lines.closed.push_back(chain.closed);
 		lines.ends.push_back({end(chain.nodes.front()), end(chain.nodes.back())});
 	}
-	return untangled(lines);
+	return lines;
+}
+
+} // namespace
+
+LineNetwork linesOf(
+	const SurfaceCurves&  curves,
+	const Scaffold&       scaffold,
+	const CrossField&     field,
+	const PointCloud&     cloud,
+	const CurvatureField& curvature)
+{
+	const std::vector<Index>       first = firstPoints(curves);
+	const Eigen::VectorXd          arms  = familyOfArms(scaffold, field, curvature);
+	std::vector<std::vector<Link>> joined(first.back());
+	for (const SurfaceCurves::Chord& chord : curves.chords) {
+		const Index a    = first[chord.a.edge] + chord.a.point,
+					b    = first[chord.b.edge] + chord.b.point;
+		const int family = familyOf(chord, curves, scaffold.mesh, field, arms);
+		joined[a].push_back({b, family});
+		joined[b].push_back({a, family});
+	}
+	std::vector<Chain> chains;
+	for (const Chain& whole : chainsOf(joined))
+		for (Chain& part : cut(whole))
+			chains.push_back(std::move(part));
+
+	const auto endOf = [&](Index node) {
+		if (joined[node].size() == 2) // cut where the family changes
+			return LineEnd::Umbilic;
+		const auto e = std::upper_bound(first.begin(), first.end(), node) - first.begin() - 1;
+		return endAt(static_cast<Index>(e), scaffold, field);
+	};
+	return untangled(
+		networkOf(chains, projectedPoints(curves, first, scaffold, cloud, curvature), endOf));
 }
 
 } // namespace curvature_lines

@@ -18,17 +18,18 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double countTolerance = 0.03; // beyond, the density is corrected once
+// Error of the number of vertices beyond which the density is corrected, once: the accuracy that is
+// promised for it.
+constexpr double countTolerance = 0.03;
 
-// Curves on the scaffold and the faces between them.
-struct ArrangedLines {
+struct FieldMesh {
 	SurfaceCurves      curves;
 	SurfaceArrangement arrangement; // its mesh cleaned up
 	Index              lineEnds = 0;
 };
 
-// Phases for a density, the curves where these are whole numbers, and their arrangement.
-ArrangedLines solveAndArrange(
+// The mesh whose lines have this density: phases, their whole numbers as curves, faces between them, clean-up.
+FieldMesh meshOfDensity(
 	const Scaffold&                 scaffold,
 	const CrossField&               field,
 	const LineDensity&              density,
@@ -38,14 +39,36 @@ ArrangedLines solveAndArrange(
 {
 	const PositionField positions =
 		positionField(scaffold.mesh, field, density, pins, options.phases);
-	ArrangedLines arranged;
-	arranged.curves = integerLines(scaffold.mesh, field, positions);
-	arranged.arrangement =
-		arrangeOnSurface(scaffold.mesh, field.normals, features, arranged.curves);
-	arranged.lineEnds = positions.lineEnds;
-	arranged.arrangement.mesh =
-		cleanUpQuads(arranged.arrangement.mesh, arranged.arrangement.onFeature);
-	return arranged;
+	FieldMesh result;
+	result.curves      = integerLines(scaffold.mesh, field, positions);
+	result.arrangement = arrangeOnSurface(scaffold.mesh, field.normals, features, result.curves);
+	result.lineEnds    = positions.lineEnds;
+	result.arrangement.mesh = cleanUpQuads(result.arrangement.mesh, result.arrangement.onFeature);
+	return result;
+}
+
+// Another try with the density corrected by the number of vertices of the first, where that misses the
+// target: the better one.
+FieldMesh meshOfTargetSize(
+	const Scaffold&                 scaffold,
+	const CrossField&               field,
+	LineDensity                     density,
+	const PhasePins&                pins,
+	const SurfaceFeatures&          features,
+	const PositionFieldMeshOptions& options,
+	const Progress&                 progress)
+{
+	FieldMesh    first = meshOfDensity(scaffold, field, density, pins, features, options);
+	const double ratio = first.arrangement.mesh.vertexCount() / options.targetVertices;
+	progress.report(0.7);
+	if (!(ratio > 0.0) || std::abs(ratio - 1.0) <= countTolerance)
+		return first;
+	density /= std::sqrt(ratio);
+	FieldMesh    second = meshOfDensity(scaffold, field, density, pins, features, options);
+	const double next   = second.arrangement.mesh.vertexCount() / options.targetVertices;
+	if (std::abs(next - 1.0) < std::abs(ratio - 1.0))
+		return second;
+	return first;
 }
 
 void projectVertices(
@@ -109,28 +132,20 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	wanted.anisotropy     = options.anisotropy;
 	LineDensity density   = lineDensity(scaffold, field, curvature, wanted);
 	progress.report(0.5);
-	ArrangedLines arranged = solveAndArrange(scaffold, field, density, pins, features, options);
-	const double  ratio    = arranged.arrangement.mesh.vertexCount() / options.targetVertices;
-	progress.report(0.7);
-	if (ratio > 0.0 && std::abs(ratio - 1.0) > countTolerance) {
-		density /= std::sqrt(ratio);
-		ArrangedLines again = solveAndArrange(scaffold, field, density, pins, features, options);
-		const double  next  = again.arrangement.mesh.vertexCount() / options.targetVertices;
-		if (std::abs(next - 1.0) < std::abs(ratio - 1.0))
-			arranged = std::move(again);
-	}
-	result.lineEnds           = arranged.lineEnds;
-	result.crossings          = arranged.arrangement.crossings;
-	result.repairedComponents = arranged.arrangement.repairedComponents;
-	result.droppedComponents += arranged.arrangement.lostComponents;
+	FieldMesh meshed =
+		meshOfTargetSize(scaffold, field, std::move(density), pins, features, options, progress);
+	result.lineEnds           = meshed.lineEnds;
+	result.crossings          = meshed.arrangement.crossings;
+	result.repairedComponents = meshed.arrangement.repairedComponents;
+	result.droppedComponents += meshed.arrangement.lostComponents;
 	progress.report(0.9);
 	if (options.keepLines) {
-		result.lines           = linesOf(arranged.curves, scaffold, field, cloud, curvature);
+		result.lines           = linesOf(meshed.curves, scaffold, field, cloud, curvature);
 		result.lines.crossings = result.crossings;
 	}
 
-	const std::vector<char> onFeature = std::move(arranged.arrangement.onFeature);
-	result.mesh                       = std::move(arranged.arrangement.mesh);
+	const std::vector<char> onFeature = std::move(meshed.arrangement.onFeature);
+	result.mesh                       = std::move(meshed.arrangement.mesh);
 	if (options.mesh.splitConcave)
 		result.mesh = withConvexFaces(result.mesh);
 	projectVertices(

@@ -29,8 +29,8 @@ struct PositionFieldMeshResult : FinishedMesh {
 	LineNetwork lines; // if keepLines
 };
 
-// The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted around
-// them, if the field knows their heights; else the cloud is clean.
+// The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted
+// around them, if the field knows their heights; else the cloud is clean.
 PositionFieldMeshResult buildPositionFieldMesh(
 	const PointCloud&               cloud,
 	const CurvatureField&           curvature,

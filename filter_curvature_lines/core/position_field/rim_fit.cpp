@@ -1,5 +1,6 @@
-// The frontier of the cloud as seen from each vertex of a rim, in the plane onto which the strip beside it unrolls:
-// a projection would bend and crowd what is far, and corners, which see one side, need to look far.
+// The frontier of the cloud as seen from each vertex of a rim, in the plane onto which the strip beside it
+// unrolls: a projection would bend and crowd what is far, and corners, which see one side, need to look
+// far.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rim_fit.h"
 
@@ -18,25 +19,39 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// of the part of a rim that tells where it lies, to either side
-constexpr Index  longestReach     = 90;
-constexpr Index  shortestReach    = 12;
-constexpr double mostWinding      = 1.0;  // of that part about a circle, RMS
-constexpr double sameCourse       = -0.5; // cosine of its turn
-constexpr Index  chordReach       = 4;    // of chords whose turn it is
-constexpr Index  sideReach        = 6;    // of the direction in which a side meets a corner
-constexpr Index  aroundCorner     = 5;    // beside so many vertices lie points of the other side
-constexpr double sameSheet        = 0.5;  // cosine of normals
-constexpr double depth            = 4.0;  // points so near are looked at; these in vertex spacings
-constexpr double bandDepth        = 3.0;  // the density is that of the points from a gap to this
-constexpr double mostGap          = 2.0;
-constexpr double leastBand        = 0.5; // its length over the rim's
+// Chosen on helicoids, seeds 1 to 20 (benchmarks/quad_mesh.py open). "Vertices" are those of the rim;
+// "spacings" those of the scaffold's vertices.
+
+// Vertices to either side, of the part of a rim whose points are used for one vertex: at most, and at least.
+constexpr Index longestReach  = 90;
+constexpr Index shortestReach = 12;
+// RMS distance of that part from a circle, in spacings: beyond, a shorter part is taken.
+constexpr double mostWinding = 1.0;
+// Cosine of the turn from the first to the last chord of that part, 120 degrees, and the vertices of a chord.
+constexpr double sameCourse = -0.5;
+constexpr Index  chordReach = 4;
+// Vertices over which the direction is taken in which a side meets a corner, and beside which points of the
+// other side lie.
+constexpr Index sideReach    = 6;
+constexpr Index aroundCorner = 5;
+// Points count that are of the rim's sheet (cosine of normals, 60 degrees) and within so many spacings of it.
+constexpr double sameSheet = 0.5;
+constexpr double depth     = 4.0;
+// The density is that of a band along the rim, so many spacings deep, without the gap next to the rim that
+// noise and voids make: a spacing and two noise units, but at most so many spacings. The length of the band
+// over the rim's is at least leastBand, where the rim bends around it.
+constexpr double bandDepth = 3.0;
+constexpr double mostGap   = 2.0;
+constexpr double leastBand = 0.5;
+// Spacings that a vertex and a corner may move in one round.
 constexpr double mostOffset       = 1.5;
 constexpr double mostCornerOffset = 4.0;
-constexpr double straight         = 0.9; // cosine of the turn of a corner that is none
-constexpr int    fitSteps         = 3;   // each sees sides and corners where the last put them
+// Cosine of the turn, 26 degrees, below which a corner is none: the front only turned around a void.
+constexpr double straight = 0.9;
+// Rounds: each sees sides and corners where the last one put them.
+constexpr int fitSteps = 3;
 
-// A vertex of a rim and the frame from which it looks at the end of the surface.
+// A vertex of a rim and its frame: along the rim and outwards.
 struct View {
 	Vector3d origin, tangent, outward;
 
@@ -70,8 +85,9 @@ struct View {
 	}
 };
 
-// A circle through the origin of a plane, there about in the direction of its first axis. Straightens what lies
-// along it: the end of a surface that is bent as a parabola is only for a short way is then nearly straight.
+// A circle through the origin of a plane, there about in the direction of its first axis. Straightens what
+// lies along it: the end of a surface that is bent as a parabola is only for a short way is then nearly
+// straight.
 struct Circle {
 	double slope = 0.0, curvature = 0.0;
 	double winding = 0.0; // RMS distance of what it was found for
@@ -118,7 +134,8 @@ Circle circleAlong(const std::vector<Vector2d>& points)
 	return circle;
 }
 
-// Part of a rim around one vertex: the strip beside it unrolled into the plane, the rim about along the first axis.
+// Part of a rim around one vertex: the strip beside it unrolled into the plane, the rim about along the
+// first axis.
 struct Strip {
 	std::vector<Vector2d> rim, points;
 	Vector2d              begin = Vector2d::Zero(), end = Vector2d::Zero(); // of the rim
@@ -267,8 +284,8 @@ private:
 		return strip;
 	}
 
-	// Where the surface ends as seen from a vertex along the longest part of the rim that follows a circle; turns
-	// the view along that.
+	// Where the surface ends as seen from a vertex along the longest part of the rim that follows a circle;
+	// turns the view along that.
 	std::optional<Frontier> frontierOf(const Rim& rim, Index k, View& view, int side) const
 	{
 		Index  reach  = std::min(longestReach, rim.size() / 4);
@@ -309,8 +326,8 @@ private:
 		return view.at(0.0, frontier ? std::clamp(frontier->value, -most, most) : 0.0);
 	}
 
-	// Half-way between the nearest points of the lines in which the two sides end. Nothing where these are one:
-	// the front turned around a void.
+	// Half-way between the nearest points of the lines in which the two sides end. Nothing where these are
+	// one: the front turned around a void.
 	std::optional<Vector3d> fittedCorner(const Rim& rim, Index k) const
 	{
 		const Vector3d start = position(rim, k), normal = m_normals.col(rim.at(k));

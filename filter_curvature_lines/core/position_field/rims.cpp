@@ -13,10 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Index  tangentReach = 4; // vertices to both sides
+// Vertices to both sides over which a tangent is taken, and those of the chords whose turn is that of the
+// rim; a corner is the sharpest turn within so many vertices, if its cosine is below 0.6: 53 degrees. By
+// experiment.
+constexpr Index  tangentReach = 4;
 constexpr Index  chordReach   = 5;
-constexpr Index  cornerReach  = 6;   // a corner is the sharpest turn within so many
-constexpr double cornerCosine = 0.6; // of the turn: 53 degrees
+constexpr Index  cornerReach  = 6;
+constexpr double cornerCosine = 0.6;
 
 // Of the vertices around a corner the one farthest from the chord across it: on a front that cuts the corner
 // the turn is about as sharp at several.

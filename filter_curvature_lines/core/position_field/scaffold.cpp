@@ -13,6 +13,7 @@
 #include "advancing_front.h"
 #include "crease_recovery.h"
 #include "neighborhoods.h"
+#include "polygon_mesh.h"
 #include "quantile.h"
 #include "shuffled_order.h"
 #include "surface_anchors.h"
@@ -23,23 +24,35 @@ namespace {
 
 using Eigen::Vector3d;
 
+// The spacing is the median mean distance to so many neighbours, of so many points.
 constexpr Index spacingProbes    = 2000;
 constexpr Index spacingNeighbors = 6;
-// mean distance to six neighbours of random points, density 1
-constexpr double poissonSpacing   = 0.977;
-constexpr double evenSites        = 1.5; // mean distance to six neighbours, thinned to distance 1
-constexpr double trianglesPerFace = 3.0; // thinning distances in an edge of the quad mesh
+// That mean distance for random points of density 1: sum over k of Gamma(k + 1/2) / (Gamma(k) sqrt(pi)) /
+// 6, k = 1 to 6.
+constexpr double poissonSpacing = 0.977;
+// And for points thinned to distance 1 at random. Measured.
+constexpr double evenSites = 1.5;
+// Least distances of vertices in an edge of the quad mesh. With mean edges of the scaffold of .4, .66, 1.2,
+// 1.7 faces the edges of a torus were .08, .15, .40, .80 degrees from the principal directions in a
+// prototype.
+constexpr double trianglesPerFace = 3.0;
 // Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
-// cuts off the corners where creases meet.
-constexpr double creaseStep     = 0.93;
-constexpr double noiseClearance = 2.0; // noise units: the denoised points beside a crease are round
-constexpr double coarser        = 1.5; // thinning of the next attempt, over this one
-constexpr int    attempts       = 3;
-constexpr int    otherTries     = 4;
-constexpr double otherDistance  = 0.05;    // thinning of each, over that of the one before
-constexpr double shortCrease    = 10.0;    // of the distance of vertices
-constexpr Index  rimFlaws       = 5;       // a rim or a handle counts as so many defects
-constexpr double toleratedDefects = 0.002; // per vertex
+// cuts off the corners where creases meet. By experiment on cubes (.7 over .75).
+constexpr double creaseStep = 0.93;
+// Clearance in noise units: the denoised points beside a crease are round. By experiment on cubes.
+constexpr double noiseClearance = 2.0;
+// Attempts with vertices farther and farther apart, and by how much; and others with a slightly different
+// distance, to have other points. By experiment.
+constexpr int    attempts      = 3;
+constexpr double coarser       = 1.5;
+constexpr int    otherTries    = 4;
+constexpr double otherDistance = 0.05;
+// Creases shorter than this, in distances of vertices, are the first to be left out. By experiment (scans).
+constexpr double shortCrease = 10.0;
+// Of two attempts the one with fewer flaws is taken; a rim or a handle counts as so many defects. Below
+// this number of defects per vertex no other attempt is made. By experiment.
+constexpr Index  rimFlaws         = 5;
+constexpr double toleratedDefects = 0.002;
 
 double spacingOf(const PointSample& sample)
 {
@@ -109,14 +122,6 @@ CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step
 	return samples;
 }
 
-Eigen::Matrix3Xd asMatrix(const std::vector<Vector3d>& points)
-{
-	Eigen::Matrix3Xd result(3, points.size());
-	for (std::size_t k = 0; k < points.size(); ++k)
-		result.col(k) = points[k];
-	return result;
-}
-
 // What the triangulation is made from: points of the cloud (`source`), then samples of creases (-1).
 struct Sites {
 	Eigen::Matrix3Xd                     points, normals; // normals of crease samples are zero
@@ -134,7 +139,7 @@ Sites chooseSites(
 	const double clearance =
 		std::max(options.creaseClearance * distance, noiseClearance * options.noise);
 	const CreaseSamples    samples   = sampleCreases(creases, creaseStep * clearance);
-	const Eigen::Matrix3Xd onCreases = asMatrix(samples.points);
+	const Eigen::Matrix3Xd onCreases = asColumns(samples.points);
 
 	std::vector<Index> chosen = thin(sample, distance);
 	if (onCreases.cols() > 0) {
@@ -165,7 +170,8 @@ Sites chooseSites(
 	return sites;
 }
 
-// Distance of the neighbours around every site; `distance` in an evenly sampled cloud, more where it is sparse.
+// Distance of the neighbours around every site; `distance` in an evenly sampled cloud, more where it is
+// sparse.
 Eigen::VectorXd localDistances(const Eigen::Matrix3Xd& points, double distance)
 {
 	const NeighborSearch search(points);
@@ -250,20 +256,16 @@ compact(const Sites& sites, std::vector<Triangle> triangles, std::vector<Index>&
 	return {std::move(points), std::move(triangles)};
 }
 
-Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOptions& options)
+// The part of the front that is a manifold; vertices in which several fans meet are copied, in `sites` too.
+// Adds what had to be left out or copied to the defects.
+std::vector<Triangle>
+separated(const std::vector<Triangle>& front, Sites& sites, Scaffold& scaffold)
 {
-	Scaffold scaffold;
-	scaffold.spacing = distance;
-	scaffold.cell    = cell;
-
-	const std::vector<Triangle> front = advancingFront(
-		sites.points, sites.normals, options.longestEdge * localDistances(sites.points, distance));
+	const Index           originals = static_cast<Index>(sites.points.cols());
 	std::vector<Index>    copies;
-	std::vector<Triangle> triangles =
-		manifoldPart(front, static_cast<Index>(sites.points.cols()), copies);
-	scaffold.defects      = static_cast<Index>(front.size() - triangles.size() + copies.size());
-	const Index originals = static_cast<Index>(sites.points.cols());
-	const Index total     = originals + static_cast<Index>(copies.size());
+	std::vector<Triangle> triangles = manifoldPart(front, originals, copies);
+	scaffold.defects  = static_cast<Index>(front.size() - triangles.size() + copies.size());
+	const Index total = originals + static_cast<Index>(copies.size());
 	sites.points.conservativeResize(3, total);
 	sites.normals.conservativeResize(3, total);
 	sites.source.resize(total);
@@ -273,17 +275,25 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 		sites.normals.col(to) = sites.normals.col(copies[k]);
 		sites.source[to]      = sites.source[copies[k]];
 	}
+	return triangles;
+}
 
-	const TriangleMesh       raw(sites.points, triangles);
-	const std::vector<Index> component = raw.components();
-	orient(raw, sites, component, triangles);
-	std::vector<double> area(raw.vertexCount(), 0.0);
-	for (Index t = 0; t < raw.triangleCount(); ++t)
-		area[component[triangles[t][0]]] += raw.areaVector(t).norm();
-	// A small component whose rim is filled as a hole would become a closed surface of two sheets. The least area is
-	// so large that its rim is longer than a small hole.
-	const double least =
-		std::max(options.leastArea * cell * cell, options.smallHole * distance * distance);
+// Drops components that are too small for a mesh, unless there is no larger one.
+void dropSmallComponents(
+	const TriangleMesh&       mesh,
+	const std::vector<Index>& component,
+	const ScaffoldOptions&    options,
+	Scaffold&                 scaffold,
+	std::vector<Triangle>&    triangles)
+{
+	std::vector<double> area(mesh.vertexCount(), 0.0);
+	for (Index t = 0; t < mesh.triangleCount(); ++t)
+		area[component[triangles[t][0]]] += mesh.areaVector(t).norm();
+	// A small component whose rim is filled as a hole would become a closed surface of two sheets. The least
+	// area is so large that its rim is longer than a small hole.
+	const double least = std::max(
+		options.leastArea * scaffold.cell * scaffold.cell,
+		options.smallHole * scaffold.spacing * scaffold.spacing);
 	const double      largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
 	std::vector<char> dropped(area.size(), 0);
 	for (std::size_t v = 0; v < area.size(); ++v) {
@@ -298,19 +308,29 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 			triangles.end(),
 			[&](const Triangle& t) { return dropped[component[t[0]]] != 0; }),
 		triangles.end());
+}
 
+void fillRims(
+	const ScaffoldOptions& options,
+	Sites&                 sites,
+	Scaffold&              scaffold,
+	std::vector<Triangle>& triangles)
+{
 	const TriangleMesh open(sites.points, triangles);
 	for (const std::vector<Index>& rim : open.rims()) {
 		const double length = lengthOf(rim, sites.points);
-		const bool   hole   = length <= options.smallHole * distance;
-		if (!hole && length > options.closedRim * cell)
+		const bool   hole   = length <= options.smallHole * scaffold.spacing;
+		if (!hole && length > options.closedRim * scaffold.cell)
 			continue;
 		scaffold.filledHoles += hole;
 		fillRim(rim, sites, triangles);
 	}
 	scaffold.defects += scaffold.filledHoles;
-	recoverCreaseEdges(sites.points, sites.creaseEdges, triangles);
+}
 
+// The mesh with the sources of its vertices and its creases.
+void finish(const Sites& sites, std::vector<Triangle> triangles, Scaffold& scaffold)
+{
 	std::vector<Index> nameOf;
 	scaffold.mesh = compact(sites, std::move(triangles), nameOf);
 	scaffold.source.resize(scaffold.mesh.vertexCount());
@@ -321,12 +341,30 @@ Scaffold attempt(Sites sites, double distance, double cell, const ScaffoldOption
 	for (const auto& [a, b] : sites.creaseEdges) {
 		const bool  used = nameOf[a] >= 0 && nameOf[b] >= 0;
 		const Index edge = used ? scaffold.mesh.edgeBetween(nameOf[a], nameOf[b]) : -1;
-		if (edge < 0) {
+		if (edge < 0)
 			++scaffold.lostCreaseEdges;
-		}
 		else
 			scaffold.creaseEdge[edge] = 1;
 	}
+}
+
+Scaffold
+triangulatedSites(Sites sites, double distance, double cell, const ScaffoldOptions& options)
+{
+	Scaffold scaffold;
+	scaffold.spacing = distance;
+	scaffold.cell    = cell;
+
+	const std::vector<Triangle> front = advancingFront(
+		sites.points, sites.normals, options.longestEdge * localDistances(sites.points, distance));
+	std::vector<Triangle>    triangles = separated(front, sites, scaffold);
+	const TriangleMesh       raw(sites.points, triangles);
+	const std::vector<Index> component = raw.components();
+	orient(raw, sites, component, triangles);
+	dropSmallComponents(raw, component, options, scaffold, triangles);
+	fillRims(options, sites, scaffold, triangles);
+	recoverCreaseEdges(sites.points, sites.creaseEdges, triangles);
+	finish(sites, std::move(triangles), scaffold);
 	return scaffold;
 }
 
@@ -369,7 +407,7 @@ struct Attempts {
 
 	Scaffold at(double distance, const std::vector<FeatureLine>& creases) const
 	{
-		return attempt(
+		return triangulatedSites(
 			chooseSites(sample, order, creases, distance, options), distance, cell, options);
 	}
 
@@ -434,7 +472,7 @@ Scaffold buildScaffold(
 		if (flawsOf(next) < flawsOf(best))
 			best = std::move(next);
 	}
-	// Curves between wrinkles are no creases, and the front can fail at them: attempts without the short ones, or all.
+	// False creases, as between wrinkles, can spoil the front: those that are shorter, then all, are left out.
 	std::vector<FeatureLine> kept = creases;
 	double                   done = 0.6;
 	for (const double least : {shortCrease * distance, double(INFINITY)}) {

@@ -71,8 +71,9 @@ certifiedFaces(const SurfaceGraph& drawn, const std::vector<Index>& excess)
 {
 	const HalfEdgeGraph& graph     = drawn.graph;
 	const auto           certified = static_cast<Index>(drawn.component.size());
-	// Edges that were divided to keep parallel ones apart have new vertices in their middle, at one end of each part. A
-	// loop begins with its half-edge of lowest number, which is of a part with an end that was there before.
+	// Edges that were divided to keep parallel ones apart have new vertices in their middle, at one end of
+	// each part. A loop begins with its half-edge of lowest number, which is of a part with an end that was
+	// there before.
 	const auto componentOf = [&](const std::vector<Index>& loop) {
 		const Index v = graph.origin(loop[0]), w = graph.origin(HalfEdgeGraph::twin(loop[0]));
 		return drawn.component[v < certified ? v : w];

@@ -1,5 +1,6 @@
-// The arrangement of curves on a triangulated surface: their graph, its reduction, and faces with a certificate that
-// each of them is a disk (Euler's formula). A09 section 6 takes every loop of half-edges for a face.
+// The arrangement of curves on a triangulated surface: their graph, its reduction, and faces with a
+// certificate that each of them is a disk (Euler's formula). A09 section 6 takes every loop of half-edges
+// for a face.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 

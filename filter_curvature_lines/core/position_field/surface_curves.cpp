@@ -10,7 +10,9 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double tolerance = 1e-9; // a phase so near to an integer is one
+// A phase so near to an integer is one: pinned phases are integers but for rounding, and the curve through
+// them is the rim or crease itself.
+constexpr double tolerance = 1e-9;
 
 std::vector<EdgePoint> pointsOn(const Complex& start, const Complex& end)
 {

@@ -304,7 +304,8 @@ private:
 
 	void sortAtVertices()
 	{
-		// Counter-clockwise around a corner, the edge that begins there is followed by the one that ends there.
+		// Counter-clockwise around a corner, the edge that begins there is followed by the one that ends
+		// there.
 		std::vector<std::vector<std::pair<Index, Index>>> follows(m_mesh.vertexCount());
 		for (Index t = 0; t < m_mesh.triangleCount(); ++t)
 			for (int c = 0; c < 3; ++c)

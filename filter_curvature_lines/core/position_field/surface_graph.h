@@ -1,5 +1,6 @@
-// The graph that curves, rims and creases draw on a triangulated surface: A09 section 6 with exact bookkeeping. Where
-// curves cross, and in which order, follows from the order of their ends around triangles alone.
+// The graph that curves, rims and creases draw on a triangulated surface: A09 section 6 with exact
+// bookkeeping. Where curves cross, and in which order, follows from the order of their ends around
+// triangles alone.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -24,9 +25,9 @@ struct SurfaceGraph {
 	Index             crossings = 0;
 };
 
-// Vertices are the crossings of the curves, their points on edges of the triangles, and the vertices of the triangles
-// on rims, on creases, and in `filled` components, of which all edges are in the graph. `component` and `filled` are
-// those of the vertices of the triangles; `normals` 3 x V, unit.
+// Vertices are the crossings of the curves, their points on edges of the triangles, and the vertices of the
+// triangles on rims, on creases, and in `filled` components, of which all edges are in the graph.
+// `component` and `filled` are those of the vertices of the triangles; `normals` 3 x V, unit.
 SurfaceGraph surfaceGraph(
 	const TriangleMesh&       mesh,
 	const Eigen::Matrix3Xd&   normals,

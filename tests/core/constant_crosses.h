@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <numeric>
 
 #include "cross_field.h"
@@ -20,8 +21,10 @@ struct CrossedSurface {
 inline CrossedSurface crossed(TriangulatedSurface surface)
 {
 	CrossedSurface result;
-	const Index    n     = surface.size();
-	result.scaffold.mesh = surface.mesh;
+	const Index    n        = surface.size();
+	result.scaffold.mesh    = surface.mesh;
+	result.scaffold.spacing = std::sqrt(surface.mesh.vertexAreas().sum() / n);
+	result.scaffold.cell    = 2.0 * result.scaffold.spacing;
 	result.scaffold.source.resize(n);
 	std::iota(result.scaffold.source.begin(), result.scaffold.source.end(), 0);
 	result.scaffold.creaseEdge.assign(surface.mesh.edgeCount(), 0);

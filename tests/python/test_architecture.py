@@ -29,7 +29,6 @@ PARTS_OF_A_STAGE = {
     "fitting/sample_kernels_simd": "fitting/sample_kernels",
     "fitting/surface_anchors": "curvature/adaptive_curvature",
     "point_set_surface/gaussian_sums_simd": "point_set_surface/gaussian_sums",
-    "position_field/position_field_lines": "position_field/position_field_mesh",
     "position_field/surface_graph": "position_field/surface_arrangement",
 }
 # Units that only a whole filter shows at work, with the test of the filter in this folder.

@@ -8,6 +8,13 @@
 
 #include "block_size.h"
 
+// Operations of blocks have to be part of the loop that uses them: a call would put all sums of the loop into memory.
+#ifdef _MSC_VER
+#define CURVATURE_LINES_INLINE __forceinline
+#else
+#define CURVATURE_LINES_INLINE inline __attribute__((always_inline))
+#endif
+
 namespace curvature_lines {
 
 // The instruction set that the whole program may use. Registers wider than a block (AVX-512) are not asked for.
@@ -93,7 +100,7 @@ private:
 // exp(-x) for x >= 0, to 1e-5 of its value (1e-10 up to 5); 0 from 16 on. Gaussian weights need no more. The
 // Taylor polynomial of degree 7 of exp(-x / 32), squared five times.
 template<class Arch>
-Block<Arch> expOfNegative(const Block<Arch>& x)
+CURVATURE_LINES_INLINE Block<Arch> expOfNegative(const Block<Arch>& x)
 {
 	const Block<Arch> t = x * (-1.0 / 32.0);
 	Block<Arch>       e = t * (1.0 / 5040.0) + 1.0 / 720.0;

@@ -11,26 +11,27 @@ namespace curvature_lines::simd {
 
 // body(0), ..., body(Count - 1) with the number as a type: loops over sums that must stay in registers.
 template<int... K, class Body>
-inline void unrolledOver(std::integer_sequence<int, K...>, const Body& body)
+CURVATURE_LINES_INLINE void unrolledOver(std::integer_sequence<int, K...>, const Body& body)
 {
 	(body(std::integral_constant<int, K>()), ...);
 }
 template<int Count, class Body>
-inline void unrolled(const Body& body)
+CURVATURE_LINES_INLINE void unrolled(const Body& body)
 {
 	unrolledOver(std::make_integer_sequence<int, Count>(), body);
 }
 
 // Weight of a sample at distance d from the centre of a ball of radius r, t2 = (d / r)^2; see ballKernel().
 template<class Arch>
-Block<Arch> kernelOf(const Block<Arch>& t2)
+CURVATURE_LINES_INLINE Block<Arch> kernelOf(const Block<Arch>& t2)
 {
 	const Block<Arch> s = 1.0 - t2;
 	return ifLess(Block<Arch>(), s, s * s, Block<Arch>());
 }
 
 template<class Arch>
-Block<Arch> dot(const Block<Arch>& x, const Block<Arch>& y, const Block<Arch>& z, const double* v)
+CURVATURE_LINES_INLINE Block<Arch>
+dot(const Block<Arch>& x, const Block<Arch>& y, const Block<Arch>& z, const double* v)
 {
 	return x * v[0] + y * v[1] + z * v[2];
 }
@@ -147,12 +148,15 @@ PlaneMoments planeMomentsOf(const OrientedColumns& ball, const double* side)
 	}
 	PlaneMoments moments;
 	moments.weight = sumOf(weight);
-	for (int r = 0; r < 3; ++r) {
+	unrolled<3>([&](auto rowOf) {
+		constexpr int r   = decltype(rowOf)::value;
 		moments.offset[r] = sumOf(offset[r]);
 		moments.normal[r] = sumOf(normal[r]);
-	}
-	for (int m = 0; m < 6; ++m)
+	});
+	unrolled<6>([&](auto entryOf) {
+		constexpr int m   = decltype(entryOf)::value;
 		moments.square[m] = sumOf(square[m]);
+	});
 	return moments;
 }
 

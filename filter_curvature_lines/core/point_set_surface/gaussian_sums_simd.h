@@ -12,6 +12,7 @@ template<class Arch>
 struct Offsets {
 	Block<Arch> x, y, z, weight;
 
+	CURVATURE_LINES_INLINE
 	Offsets(const ControlColumns& points, int s, const double* place, double sharpness) :
 			x(Block<Arch>::at(points.rows + s) - place[0]),
 			y(Block<Arch>::at(points.rows + points.padded + s) - place[1]),

@@ -41,30 +41,6 @@ std::uint64_t fingerprint(const LayerPoints& points)
 	return print.value();
 }
 
-std::uint64_t fingerprint(const EstimateOptions& options)
-{
-	Fingerprint print;
-	print.add(options.neighborhood.boundaryThreshold);
-	print.add(options.neighborhood.candidates);
-	print.add(static_cast<double>(options.curvature.scaleMode));
-	if (options.curvature.scaleMode == ScaleMode::Adaptive) {
-		print.add(options.curvature.adaptive.minProbes);
-		print.add(options.curvature.adaptive.maxProbes);
-		return print.value();
-	}
-	const RobustCurvatureOptions& paper = options.curvature.paper;
-	print.add(paper.regionScale);
-	print.add(paper.maxIterations);
-	print.add(paper.tolerance);
-	print.add(paper.sigmaFactor);
-	print.add(paper.cut);
-	print.add(paper.featureGate);
-	print.add(paper.robust);
-	print.add(paper.maxPoints);
-	print.add(paper.maxPairs);
-	return print.value();
-}
-
 } // namespace
 
 CurvatureEstimate::CurvatureEstimate(
@@ -101,7 +77,7 @@ void CurvatureEstimate::adoptNormals(LayerPoints& points)
 }
 
 std::shared_ptr<const CurvatureEstimate>
-CurvatureCache::find(std::uint64_t points, std::uint64_t options)
+CurvatureCache::find(std::uint64_t points, const EstimateOptions& options)
 {
 	const std::lock_guard<std::mutex> lock(m_mutex);
 	for (const Entry& entry : m_entries)
@@ -113,11 +89,11 @@ CurvatureCache::find(std::uint64_t points, std::uint64_t options)
 std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimate(
 	const LayerPoints& points, const EstimateOptions& options, const Progress& progress)
 {
-	const Entry key{fingerprint(points), fingerprint(options), nullptr};
-	if (auto known = find(key.points, key.options))
+	const std::uint64_t print = fingerprint(points);
+	if (auto known = find(print, options))
 		return known;
 	auto made = std::make_shared<const CurvatureEstimate>(points, options, progress);
-	store({key.points, key.options, made});
+	store({print, options, made});
 	return made;
 }
 
@@ -132,7 +108,7 @@ std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimateAndCorrect(
 		return estimate(points, options, progress.sub(0.5, 1, ""));
 	// A new estimate from these normals would differ in the last digits: this one answers for the layer it
 	// was written to, but for no options.
-	store({fingerprint(points), 0, first});
+	store({fingerprint(points), std::nullopt, first});
 	return first;
 }
 
@@ -152,7 +128,7 @@ CurvatureCache::ofLayer(const MeshModel& layer, const LayerPoints& points, const
 			}
 	}
 	if (!carried)
-		result.estimate = find(print, fingerprint(EstimateOptions()));
+		result.estimate = find(print, EstimateOptions());
 	result.reused = result.estimate != nullptr;
 	if (!result.reused)
 		result.estimate = estimate(points, {}, progress);

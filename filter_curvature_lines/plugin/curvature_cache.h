@@ -1,6 +1,6 @@
-// Curvature estimates kept in memory between filters. Each belongs to exact points, normals and
-// parameters, which a fingerprint stands for: when the layer has changed, nothing matches and the
-// estimate is made anew. Layers are never referenced, so deleting them is harmless.
+// Curvature estimates kept in memory between filters. Each belongs to exact points and normals, for which a fingerprint
+// stands, and to its options: when the layer or they have changed, nothing matches and the estimate is made anew.
+// Layers are never referenced, so deleting them is harmless.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include <common/ml_document/mesh_model.h>
 
@@ -22,6 +23,11 @@ struct EstimateOptions {
 	MinimumNeighborhoodOptions neighborhood;
 	CurvatureOptions           curvature;
 };
+
+inline bool operator==(const EstimateOptions& a, const EstimateOptions& b)
+{
+	return members<2>(a) == members<2>(b);
+}
 
 // A cloud in the unit frame with its curvature. The cloud's normals are those the directions are tangent
 // to: with ScaleMode::Adaptive, those of the fitted surface where it differs from the layer's. Not movable:
@@ -66,11 +72,13 @@ public:
 
 private:
 	struct Entry {
-		std::uint64_t                            points, options; // fingerprints
+		std::uint64_t                            points;  // fingerprint
+		std::optional<EstimateOptions>           options; // none: made otherwise
 		std::shared_ptr<const CurvatureEstimate> estimate;
 	};
 
-	std::shared_ptr<const CurvatureEstimate> find(std::uint64_t points, std::uint64_t options);
+	std::shared_ptr<const CurvatureEstimate>
+	find(std::uint64_t points, const EstimateOptions& options);
 	void store(const Entry& entry);
 
 	std::list<Entry> m_entries; // latest first

@@ -32,18 +32,12 @@ double scalarOf(CurvatureScalar scalar, const VertexCurvatures& values, Index i)
 
 } // namespace
 
-void addCurvatureOutput(RichParameterList& list)
+void curvatureOutputParameters(ParameterTable& table, CurvatureOutput& output)
 {
-	list.addParam(RichEnum(
+	table.row(
 		"scalar",
-		0,
-		QStringList() << "Mean"
-					  << "Gaussian"
-					  << "K1"
-					  << "K2"
-					  << "Curvedness"
-					  << "Shape Index"
-					  << "Confidence",
+		output.scalar,
+		Choice{{"Mean", "Gaussian", "K1", "K2", "Curvedness", "Shape Index", "Confidence"}},
 		"Quality",
 		"What is stored as vertex quality.<ul>"
 		"<li><b>Mean</b>: (k1 + k2) / 2</li>"
@@ -51,19 +45,15 @@ void addCurvatureOutput(RichParameterList& list)
 		"<li><b>K1</b>, <b>K2</b>: the larger and the smaller principal curvature</li>"
 		"<li><b>Curvedness</b>: sqrt((k1^2 + k2^2) / 2)</li>"
 		"<li><b>Shape Index</b>: +1 convex cap, 0 saddle, -1 concave cup</li>"
-		"<li><b>Confidence</b>: how much the neighbours' estimates rely on the point</li></ul>"));
-	list.addParam(RichBool(
+		"<li><b>Confidence</b>: how much the neighbours' estimates rely on the point</li></ul>");
+	table.row(
 		"colorize",
-		true,
+		output.colorize,
+		Flag(),
 		"Colour the points",
 		"With Mean, by both principal curvatures at once: convex red, saddle green, concave blue, "
 		"flat white. With the other scalars, by MeshLab's quality ramp between the 10th and the "
-		"90th percentile."));
-}
-
-CurvatureOutput curvatureOutput(const Parameters& parameters)
-{
-	return {static_cast<CurvatureScalar>(parameters.choice("scalar")), parameters.flag("colorize")};
+		"90th percentile.");
 }
 
 void writeCurvatureOutput(

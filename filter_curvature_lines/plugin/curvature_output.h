@@ -3,7 +3,8 @@
 #pragma once
 
 #include "filter_results.h"
-#include "parameters.h"
+#include "layer_conversion.h"
+#include "parameter_table.h"
 
 namespace curvature_lines {
 
@@ -14,8 +15,7 @@ struct CurvatureOutput {
 	bool            colorize = true;
 };
 
-void addCurvatureOutput(RichParameterList& list);
-CurvatureOutput curvatureOutput(const Parameters& parameters);
+void curvatureOutputParameters(ParameterTable& table, CurvatureOutput& output);
 
 // K1, K2, PD1, PD2, attributes, quality and colour.
 void writeCurvatureOutput(

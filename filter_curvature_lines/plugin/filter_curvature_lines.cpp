@@ -92,7 +92,7 @@ int FilterCurvatureLines::postCondition(const QAction* action) const
 RichParameterList
 FilterCurvatureLines::initParameterList(const QAction* action, const MeshDocument& document)
 {
-	return specOf(ID(action)).parameters(document);
+	return specOf(ID(action)).action.parameters(document);
 }
 
 std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
@@ -108,9 +108,9 @@ std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
 		return MLException(why.left(1).toUpper() + why.mid(1));
 	};
 	try {
-		const RichParameterList list = withDefaults(given, spec.parameters(document));
+		const RichParameterList list = withDefaults(given, spec.action.parameters(document));
 		FilterResults           results =
-			spec.apply({Parameters(list), document, m_cache, hostProgress(callback)});
+			spec.action.apply({document, m_cache, hostProgress(callback)}, list);
 		// MeshLab's window drops the dictionary, so the log carries it.
 		for (const auto& [key, value] : results.values())
 			log("%s: %s", key.c_str(), value.toString().toStdString().c_str());

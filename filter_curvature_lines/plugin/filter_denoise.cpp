@@ -11,83 +11,65 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+void parameters(ParameterTable& table, DenoisingOptions& options)
 {
-	const DenoisingOptions defaults;
-	RichParameterList      list;
-	list.addParam(RichEnum(
+	table.row(
 		"method",
-		static_cast<int>(defaults.method),
-		QStringList() << "Robust"
-					  << "Paper",
+		options.method,
+		Choice{{"Robust", "Paper"}},
 		"Method",
 		"How the points are moved.<ul>"
 		"<li><b>Robust</b>: onto the surfaces their neighbours fit, at a radius found from the "
 		"cloud; "
 		"edges stay sharp. Needs no curvature</li>"
 		"<li><b>Paper</b>: all at once, so that the triangles of each point with its neighbours "
-		"agree with the corrected normals (a global energy, as published)</li></ul>"));
-	list.addParam(RichFloat(
+		"agree with the corrected normals (a global energy, as published)</li></ul>");
+	table.row(
 		"noise",
-		Scalarm(defaults.robust.noise),
+		options.robust.noise,
+		Length(),
 		"Noise (length; 0: automatic)",
 		"Robust: standard deviation of the points from the surface, a length in the layer's units "
-		"(0 = automatic, at most half the bounding-box diagonal)."));
-	list.addParam(RichFloat(
+		"(0 = automatic, at most half the bounding-box diagonal).");
+	table.row(
 		"radius",
-		Scalarm(defaults.robust.radius),
+		options.robust.radius,
+		AutomaticOr{2.5, 100.0},
 		"Radius (spacings; 0: automatic)",
 		"Robust: size of the fitted pieces of surface, in local point spacings (0 = automatic, at "
-		"least 2.5 and at most 100). Larger ones remove more noise and more detail."));
-	list.addParam(RichInt(
+		"least 2.5 and at most 100). Larger ones remove more noise and more detail.");
+	table.row(
 		"iterations",
-		defaults.paper.iterations,
+		options.paper.iterations,
+		Integer{1, 10000},
 		"Iterations (Paper)",
 		"Paper: largest number of iterations of the optimiser (1 to 10000).",
-		true));
-	list.addParam(RichEnum(
+		advancedParameter);
+	table.row(
 		"energy",
-		static_cast<int>(defaults.paper.energy),
-		QStringList() << "Square Root"
-					  << "Squared",
+		options.paper.energy,
+		Choice{{"Square Root", "Squared"}},
 		"Energy (Paper)",
 		"Paper: power of the disagreement between triangle and normal.<ul>"
 		"<li><b>Square Root</b>: as published in 2009, respects edges</li>"
 		"<li><b>Squared</b>: smoother, removes more noise on smooth surfaces</li></ul>",
-		true));
-	list.addParam(RichEnum(
+		advancedParameter);
+	table.row(
 		"optimizer",
-		static_cast<int>(defaults.paper.optimizer),
-		QStringList() << "L-BFGS-B"
-					  << "Polak-Ribiere",
+		options.paper.optimizer,
+		Choice{{"L-BFGS-B", "Polak-Ribiere"}},
 		"Optimiser (Paper)",
 		"Paper: L-BFGS-B (2009), or Polak-Ribiere conjugate gradients (2007).",
-		true));
-	list.addParam(RichEnum(
+		advancedParameter);
+	table.row(
 		"neighbors",
-		static_cast<int>(defaults.paper.neighbors),
-		QStringList() << "Six Sectors"
-					  << "Nearest",
+		options.paper.neighbors,
+		Choice{{"Six Sectors", "Nearest"}},
 		"Neighbours (Paper)",
 		"Paper: the six neighbours of each point: the closest in each sixth of the tangent plane, "
 		"or the "
 		"six nearest.",
-		true));
-	return list;
-}
-
-DenoisingOptions denoisingOptions(const Parameters& parameters)
-{
-	using Paper = EnergyDenoisingOptions;
-	DenoisingOptions options;
-	options.method           = static_cast<DenoisingOptions::Method>(parameters.choice("method"));
-	options.robust.noise     = parameters.length("noise");
-	options.robust.radius    = parameters.automaticOr("radius", 2.5, 100.0);
-	options.paper.iterations = parameters.integer("iterations", 1, 10000);
-	options.paper.energy     = static_cast<Paper::Energy>(parameters.choice("energy"));
-	options.paper.optimizer  = static_cast<Paper::Optimizer>(parameters.choice("optimizer"));
-	options.paper.neighbors  = static_cast<Paper::Neighbors>(parameters.choice("neighbors"));
-	return options;
+		advancedParameter);
 }
 
 // The curvature of the layer, when the method asks for it.
@@ -119,9 +101,9 @@ private:
 	double               m_seconds = 0.0;
 };
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const DenoisingOptions& given)
 {
-	DenoisingOptions    options = denoisingOptions(context.parameters);
+	DenoisingOptions    options = given;
 	MeshModel&          layer   = currentLayer(context.document);
 	const LayerPoints   points  = readOrientedPoints(layer);
 	const Stopwatch     total;
@@ -185,8 +167,7 @@ FilterSpec denoiseFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

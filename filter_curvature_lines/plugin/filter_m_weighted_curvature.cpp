@@ -3,6 +3,7 @@
 #include "curvature_output.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "shared_parameters.h"
 
 #include "m_weighted_curvature.h"
 
@@ -10,56 +11,49 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+struct Options {
+	MWeightedCurvatureOptions estimate;
+	CurvatureOutput           output;
+	UmbilicOptions            umbilics;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const MWeightedCurvatureOptions defaults;
-	RichParameterList               list;
-	list.addParam(RichFloat(
+	table.row(
 		"bandwidth",
-		Scalarm(defaults.bandwidth),
+		options.estimate.bandwidth,
+		Real{0.5, 20.0},
 		"Bandwidth (spacings)",
 		"Length h of the weights, in local point spacings (0.5 to 20). The weight is largest at h "
-		"times the root of the exponent. Larger resists more noise and blurs more detail."));
-	list.addParam(RichInt(
+		"times the root of the exponent. Larger resists more noise and blurs more detail.");
+	table.row(
 		"exponent",
-		defaults.exponent,
+		options.estimate.exponent,
+		Integer{1, 10},
 		"Exponent (M weights)",
 		"With M weights, the power xi of x^(2 xi) exp(-x^2 / h^2) (1 to 10): the larger, the less "
-		"the closest points count."));
-	list.addParam(RichInt(
+		"the closest points count.");
+	table.row(
 		"neighbors",
-		defaults.neighbors,
+		options.estimate.neighbors,
+		Integer{6, 1000},
 		"Neighbours (number)",
-		"Nearest points looked at around each point (6 to 1000)."));
-	list.addParam(RichEnum(
+		"Nearest points looked at around each point (6 to 1000).");
+	table.row(
 		"weighting",
-		static_cast<int>(defaults.weighting),
-		QStringList() << "M"
-					  << "Gaussian"
-					  << "Unweighted",
+		options.estimate.weighting,
+		Choice{{"M", "Gaussian", "Unweighted"}},
 		"Weights",
 		"How much a neighbour counts by its distance x.<ul>"
 		"<li><b>M</b>: x^(2 xi) exp(-x^2 / h^2), little where close, as published</li>"
 		"<li><b>Gaussian</b>: exp(-x^2 / h^2), for comparison: noise makes close points wild</li>"
-		"<li><b>Unweighted</b>: all neighbours alike</li></ul>"));
-	addCurvatureOutput(list);
-	addUmbilicRatio(list);
-	return list;
+		"<li><b>Unweighted</b>: all neighbours alike</li></ul>");
+	curvatureOutputParameters(table, options.output);
+	umbilicParameter(table, options.umbilics);
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	const Parameters&         parameters = context.parameters;
-	MWeightedCurvatureOptions options;
-	options.bandwidth = parameters.real("bandwidth", 0.5, 20.0);
-	options.exponent  = parameters.integer("exponent", 1, 10);
-	options.neighbors = parameters.integer("neighbors", 6, 1000);
-	options.weighting =
-		static_cast<MWeightedCurvatureOptions::Weighting>(parameters.choice("weighting"));
-	const CurvatureOutput output = curvatureOutput(parameters);
-	UmbilicOptions        umbilicOptions;
-	umbilicOptions.ratio = umbilicRatio(parameters);
-
 	MeshModel&                 layer  = currentLayer(context.document);
 	const LayerPoints          points = readOrientedPoints(layer);
 	FilterResults              results;
@@ -72,15 +66,15 @@ FilterResults apply(const FilterContext& context)
 		prepared.cloud,
 		search,
 		minimum,
-		options,
+		options.estimate,
 		context.progress.sub(0.4, 1.0, "Estimating curvature"));
 	const VertexCurvatures values = perVertex(
 		points,
 		prepared,
 		field,
-		findUmbilics(prepared.cloud, field, minimum, umbilicOptions).umbilic);
+		findUmbilics(prepared.cloud, field, minimum, options.umbilics).umbilic);
 
-	writeCurvatureOutput(layer, points, prepared.diagonal, values, output);
+	writeCurvatureOutput(layer, points, prepared.diagonal, values, options.output);
 	reportCurvature(results, prepared, minimum, values);
 	results.seconds("total", total.seconds());
 	return results;
@@ -113,8 +107,7 @@ FilterSpec mWeightedCurvatureFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR | MeshModel::MM_VERTCURVDIR,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

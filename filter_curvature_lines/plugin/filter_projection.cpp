@@ -12,46 +12,50 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument& document)
+struct Options {
+	int                    controlLayer = -1, proxyLayer = -1;
+	CurvatureDrivenOptions surface;
+	Index                  perPoint = 1; // points made of each; 1: it moves
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const CurvatureDrivenOptions defaults;
-	const int                    current = document.mm() ? document.mm()->id() : -1;
-	RichParameterList            list;
-	list.addParam(RichMesh(
+	options.controlLayer = options.proxyLayer = currentLayerId(table.document());
+	table.row(
 		"control_mesh",
-		current,
-		&document,
+		options.controlLayer,
+		Layer{table.document()},
 		"Cloud that is the surface",
 		"The cloud that defines the surface; it needs oriented normals and stays as it is, unless "
 		"it is "
-		"projected onto its own surface."));
-	list.addParam(RichMesh(
+		"projected onto its own surface.");
+	table.row(
 		"proxy_mesh",
-		current,
-		&document,
+		options.proxyLayer,
+		Layer{table.document()},
 		"Layer to project",
-		"The layer whose vertices move onto the surface."));
-	list.addParam(RichFloat(
+		"The layer whose vertices move onto the surface.");
+	table.row(
 		"bandwidth",
-		Scalarm(defaults.bandwidth),
+		options.surface.bandwidth,
+		Real{0.5, 20.0},
 		"Bandwidth (spacings)",
 		"Of the Gaussian weights, in local spacings of the control points (0.5 to 20). Larger "
 		"removes "
-		"more noise and blurs more detail."));
-	list.addParam(RichInt(
+		"more noise and blurs more detail.");
+	table.row(
 		"diffusion_steps",
-		defaults.diffusionSteps,
+		options.surface.diffusionSteps,
+		Integer{1, 1000},
 		"Diffusion steps",
 		"Largest number of steps that move a point onto the surface along the normal (1 to 1000); "
 		"it "
 		"stops when nothing moves.",
-		true));
-	list.addParam(RichEnum(
+		advancedParameter);
+	table.row(
 		"diffusion_function",
-		static_cast<int>(defaults.diffusion),
-		QStringList() << "Hermite"
-					  << "Cutoff"
-					  << "Rational",
+		options.surface.diffusion,
+		Choice{{"Hermite", "Cutoff", "Rational"}},
 		"Diffusion",
 		"What a control point says about where the surface is.<ul>"
 		"<li><b>Hermite</b>: the mean of its own height and that of its tangent plane, which does "
@@ -59,25 +63,15 @@ RichParameterList parameters(const MeshDocument& document)
 		"shrink the surface</li>"
 		"<li><b>Cutoff</b>, <b>Rational</b>: its height, none or less of it where the surface "
 		"bends much "
-		"towards it, as published: shrinks bends by a share of the spacing</li></ul>"));
-	list.addParam(RichInt(
+		"towards it, as published: shrinks bends by a share of the spacing</li></ul>");
+	table.row(
 		"resample",
-		1,
+		options.perPoint,
+		Integer{1, 100},
 		"Points per vertex (1: move)",
 		"1: the vertices move. More (up to 100): so many points around each vertex, projected, as "
 		"a new "
-		"layer: a denser cloud on the same surface."));
-	return list;
-}
-
-const MeshModel& layerOf(const FilterContext& context, const QString& name)
-{
-	const int        id    = context.parameters.layerId(name);
-	const MeshModel* layer = context.document.getMesh(id);
-	if (layer == nullptr)
-		throw MLException(
-			"parameter '" + name + "' is " + QString::number(id) + ", and there is no such layer.");
-	return *layer;
+		"layer: a denser cloud on the same surface.");
 }
 
 template<class Vertex>
@@ -114,17 +108,10 @@ void appendProjected(MeshModel& layer, const PreparedCloud& frame, const Project
 	vcg::tri::UpdateBounding<CMeshO>::Box(layer.cm);
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	const Parameters&      parameters = context.parameters;
-	CurvatureDrivenOptions options;
-	options.bandwidth      = parameters.real("bandwidth", 0.5, 20.0);
-	options.diffusionSteps = parameters.integer("diffusion_steps", 1, 1000);
-	options.diffusion =
-		static_cast<CurvatureDrivenOptions::Diffusion>(parameters.choice("diffusion_function"));
-	const Index      perPoint = parameters.integer("resample", 1, 100);
-	const MeshModel& control  = layerOf(context, "control_mesh");
-	const MeshModel& proxy    = layerOf(context, "proxy_mesh");
+	const MeshModel& control = layerWithId(context.document, options.controlLayer, "control_mesh");
+	const MeshModel& proxy   = layerWithId(context.document, options.proxyLayer, "proxy_mesh");
 	requireSameMatrix(control, proxy, "'control_mesh' and 'proxy_mesh'");
 
 	const LayerPoints          points = readOrientedPoints(control);
@@ -136,13 +123,13 @@ FilterResults apply(const FilterContext& context)
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(
 		prepared.cloud, search, {}, context.progress.sub(0.0, 0.3, "Finding neighborhoods"));
 	const ControlPoints          controlPoints{prepared.cloud, search, minimum.spacing};
-	const CurvatureDrivenSurface surface(controlPoints, options);
+	const CurvatureDrivenSurface surface(controlPoints, options.surface);
 
 	Eigen::Matrix3Xd unit = moving.positions;
 	for (Index i = 0; i < moving.size(); ++i)
 		unit.col(i) = prepared.toUnit(moving.positions.col(i));
-	if (perPoint > 1)
-		unit = scatterAround(controlPoints, unit, perPoint);
+	if (options.perPoint > 1)
+		unit = scatterAround(controlPoints, unit, options.perPoint);
 	const ProjectedPoints projected =
 		projectPoints(surface, unit, {}, context.progress.sub(0.3, 1.0, "Projecting"));
 
@@ -162,7 +149,7 @@ FilterResults apply(const FilterContext& context)
 			"point "
 			"spacings); check that both layers show the same thing at the same place.");
 
-	if (perPoint == 1) {
+	if (options.perPoint == 1) {
 		MeshModel& target = *context.document.getMesh(proxy.id());
 		target.updateDataMask(MeshModel::MM_VERTNORMAL);
 		writeProjected(target, moving, prepared, projected);
@@ -211,8 +198,7 @@ FilterSpec projectionFilter()
 		FilterPlugin::VARIABLE,
 		MeshModel::MM_NONE,
 		MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

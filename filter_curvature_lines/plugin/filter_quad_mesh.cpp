@@ -4,6 +4,7 @@
 #include "help_text.h"
 #include "polygon_layer.h"
 #include "polyline_layer.h"
+#include "shared_parameters.h"
 
 #include "quad_mesh.h"
 
@@ -21,24 +22,28 @@ int defaultCloud(const MeshDocument& document)
 	return source >= 0 && document.getMesh(source) != nullptr ? source : current->id();
 }
 
-RichParameterList parameters(const MeshDocument& document)
+struct Options {
+	int                  cloudLayer = -1;
+	MeshFinishingOptions mesh;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const MeshFinishingOptions defaults;
-	RichParameterList          list;
-	list.addParam(RichMesh(
+	options.cloudLayer = defaultCloud(table.document());
+	table.row(
 		"point_cloud",
-		defaultCloud(document),
-		&document,
+		options.cloudLayer,
+		Layer{table.document()},
 		"Point cloud",
 		"The layer the lines were traced on. It is found by itself when the lines were traced in "
-		"this session."));
-	addMeshParameters(list);
-	list.addParam(RichBool(
+		"this session.");
+	meshParameters(table, options.mesh);
+	table.row(
 		"split_concave",
-		defaults.splitConcave,
+		options.mesh.splitConcave,
+		Flag(),
 		"Split concave faces",
-		"Cut faces with a reflex corner into convex ones."));
-	return list;
+		"Cut faces with a reflex corner into convex ones.");
 }
 
 void requireLinesOnCloud(const LineNetwork& lines)
@@ -50,14 +55,10 @@ void requireLinesOnCloud(const LineNetwork& lines)
 			"'point_cloud'.");
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	MeshFinishingOptions options = meshOptions(context.parameters);
-	options.splitConcave         = context.parameters.flag("split_concave");
-
 	const MeshModel& lineLayer  = currentLayer(context.document);
-	const int        cloudId    = context.parameters.layerId("point_cloud");
-	const MeshModel* cloudLayer = context.document.getMesh(cloudId);
+	const MeshModel* cloudLayer = context.document.getMesh(options.cloudLayer);
 	if (sourceLayerOf(lineLayer) < 0 && lineLayer.cm.en == 0)
 		throw MLException(
 			"the current layer '" + lineLayer.label() +
@@ -65,7 +66,7 @@ FilterResults apply(const FilterContext& context)
 			"point cloud first and leave its layer current.");
 	if (cloudLayer == nullptr)
 		throw MLException(
-			"parameter 'point_cloud' is " + QString::number(cloudId) +
+			"parameter 'point_cloud' is " + QString::number(options.cloudLayer) +
 			", and there is no such layer; allowed is the layer the lines were traced on.");
 	if (cloudLayer == &lineLayer)
 		throw MLException(
@@ -83,7 +84,11 @@ FilterResults apply(const FilterContext& context)
 		prepared.cloud.positions, context.progress.sub(0.0, 0.3, "Finding Voronoi cells"));
 	results.seconds("voronoi", stage.lap());
 	const QuadMeshResult built = buildQuadMesh(
-		prepared.cloud, cells, lines, options, context.progress.sub(0.3, 1.0, "Building the mesh"));
+		prepared.cloud,
+		cells,
+		lines,
+		options.mesh,
+		context.progress.sub(0.3, 1.0, "Building the mesh"));
 	results.seconds("mesh", stage.lap());
 
 	if (built.mesh.faceCount() == 0)
@@ -126,8 +131,7 @@ FilterSpec quadMeshFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_NONE,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

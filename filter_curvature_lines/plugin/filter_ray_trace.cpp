@@ -25,84 +25,100 @@ enum class CameraKind { Automatic, Given };
 
 const Eigen::Vector3d plainColor(0.80, 0.79, 0.76);
 
-RichParameterList parameters(const MeshDocument& document)
+struct Options {
+	QString        file;
+	PictureOptions picture;
+	SurfaceKind    surface    = SurfaceKind::CurvatureDriven;
+	ColorBy        colorBy    = ColorBy::Plain;
+	int            lineLayer  = -1;
+	CameraKind     cameraKind = CameraKind::Automatic;
+	Camera         camera; // Given: in model units; Automatic: only its field of view counts
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const PictureOptions defaults;
-	const int            current = document.mm() ? document.mm()->id() : -1;
-	RichParameterList    list;
-	list.addParam(RichFileSave(
+	options.lineLayer = currentLayerId(table.document());
+	table.row(
 		"image_file",
-		"",
-		"*.png",
+		options.file,
+		SaveFile{"*.png"},
 		"Image file",
-		"Where the picture goes: a PNG file, replaced if it exists."));
-	list.addParam(RichInt("width", defaults.image.width, "Width (pixels)", "1 to 8192."));
-	list.addParam(RichInt("height", defaults.image.height, "Height (pixels)", "1 to 8192."));
-	list.addParam(RichEnum(
+		"Where the picture goes: a PNG file, replaced if it exists.");
+	table.row(
+		"width", options.picture.image.width, Integer{1, 8192}, "Width (pixels)", "1 to 8192.");
+	table.row(
+		"height", options.picture.image.height, Integer{1, 8192}, "Height (pixels)", "1 to 8192.");
+	table.row(
 		"surface",
-		0,
-		QStringList() << "Curvature-Driven"
-					  << "Moving Least Squares",
+		options.surface,
+		Choice{{"Curvature-Driven", "Moving Least Squares"}},
 		"Surface",
 		"The surface between the points.<ul>"
 		"<li><b>Curvature-Driven</b>: quadrics of principal curvatures and directions</li>"
 		"<li><b>Moving Least Squares</b>: complete quadrics over fitted planes; needs normals for "
-		"the side only</li></ul>"));
-	list.addParam(
-		RichColor("background", QColor(255, 255, 255), "Background", "Colour where nothing is."));
-	list.addParam(RichEnum(
+		"the side only</li></ul>");
+	table.row(
+		"background",
+		options.picture.background,
+		Color(),
+		"Background",
+		"Colour where nothing is.");
+	table.row(
 		"color_by",
-		0,
-		QStringList() << "Plain"
-					  << "Curvature"
-					  << "Vertex Colour",
+		options.colorBy,
+		Choice{{"Plain", "Curvature", "Vertex Colour"}},
 		"Colour",
 		"<ul><li><b>Plain</b>: one light grey</li>"
 		"<li><b>Curvature</b>: convex red, saddle green, concave blue, flat white</li>"
-		"<li><b>Vertex Colour</b>: that of the layer, as other filters leave it</li></ul>"));
-	list.addParam(RichMesh(
+		"<li><b>Vertex Colour</b>: that of the layer, as other filters leave it</li></ul>");
+	table.row(
 		"lines",
-		current,
-		&document,
+		options.lineLayer,
+		Layer{table.document()},
 		"Layer of lines (the cloud's own: no lines)",
 		"The layer whose lines (of curvature, or any edges) are drawn on the surface, in the "
 		"colours of its vertices. "
-		"Leave the cloud's own layer here, as it is at first, to draw none."));
-	list.addParam(RichEnum(
+		"Leave the cloud's own layer here, as it is at first, to draw none.");
+	table.row(
 		"camera",
-		0,
-		QStringList() << "Automatic"
-					  << "Given",
+		options.cameraKind,
+		Choice{{"Automatic", "Given"}},
 		"Camera",
 		"<b>Automatic</b>: sees all points, from the side their normals face. <b>Given</b>: by the "
 		"parameters below.",
-		true));
-	list.addParam(RichPosition(
+		advancedParameter);
+	table.row(
 		"camera_position",
-		Point3m(0, 0, 2),
+		options.camera.position,
+		Position(),
 		"Camera position",
 		"In the layer's coordinates.",
-		true));
-	list.addParam(RichPosition(
+		advancedParameter);
+	table.row(
 		"camera_target",
-		Point3m(0, 0, 0),
+		options.camera.target,
+		Position(),
 		"Camera target",
 		"What is in the middle of the picture.",
-		true));
-	list.addParam(RichDirection(
-		"camera_up", Point3m(0, 1, 0), "Camera up", "What is up in the picture.", true));
-	list.addParam(RichFloat(
+		advancedParameter);
+	table.row(
+		"camera_up",
+		options.camera.up,
+		Direction(),
+		"Camera up",
+		"What is up in the picture.",
+		advancedParameter);
+	table.row(
 		"field_of_view",
-		Scalarm(Camera().fieldOfView),
+		options.camera.fieldOfView,
+		Real{1.0, 150.0},
 		"Field of view (degrees)",
 		"Across the shorter side of the picture, in degrees (1 to 150).",
-		true));
-	return list;
+		advancedParameter);
 }
 
-QString imageFile(const Parameters& parameters)
+void requireImageFile(const QString& path)
 {
-	const QString path = parameters.text("image_file");
 	if (path.isEmpty())
 		throw MLException(
 			"parameter 'image_file' is empty; name the PNG file the picture goes to.");
@@ -112,19 +128,17 @@ QString imageFile(const Parameters& parameters)
 			"'; pictures are PNG files, the name must end in .png.");
 	if (!QFileInfo(path).absoluteDir().exists())
 		throw MLException("the folder of '" + path + "' does not exist; make it first.");
-	return path;
 }
 
-Camera cameraOf(const Parameters& parameters, const PreparedCloud& prepared, double aspectRatio)
+Camera cameraOf(const Options& options, const PreparedCloud& prepared)
 {
-	const double fieldOfView = parameters.real("field_of_view", 1.0, 150.0);
-	if (static_cast<CameraKind>(parameters.choice("camera")) == CameraKind::Automatic)
-		return Camera::facing(prepared.cloud, aspectRatio, fieldOfView);
-	Camera camera;
-	camera.fieldOfView = fieldOfView;
-	camera.position    = prepared.toUnit(parameters.point("camera_position"));
-	camera.target      = prepared.toUnit(parameters.point("camera_target"));
-	camera.up          = parameters.point("camera_up");
+	const RayTracingOptions& image = options.picture.image;
+	if (options.cameraKind == CameraKind::Automatic)
+		return Camera::facing(
+			prepared.cloud, double(image.width) / image.height, options.camera.fieldOfView);
+	Camera camera   = options.camera;
+	camera.position = prepared.toUnit(camera.position);
+	camera.target   = prepared.toUnit(camera.target);
 	if (!((camera.target - camera.position).cross(camera.up).norm() > 1e-12))
 		throw MLException(
 			"'camera_up' runs along the view from 'camera_position' to 'camera_target'; give "
@@ -199,23 +213,11 @@ void savePicture(const Picture& picture, const QString& path)
 		throw MLException("'" + path + "' cannot be written: " + file.errorString() + ".");
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	const Parameters& parameters = context.parameters;
-	const QString     path       = imageFile(parameters);
-	PictureOptions    options;
-	options.image.width  = parameters.integer("width", 1, 8192);
-	options.image.height = parameters.integer("height", 1, 8192);
-	options.background   = parameters.color("background");
-	const auto kind      = static_cast<SurfaceKind>(parameters.choice("surface"));
-	const auto colorBy   = static_cast<ColorBy>(parameters.choice("color_by"));
-
+	requireImageFile(options.file);
 	const MeshModel& layer     = currentLayer(context.document);
-	const int        lineId    = parameters.layerId("lines");
-	const MeshModel* lineLayer = context.document.getMesh(lineId);
-	if (lineLayer == nullptr)
-		throw MLException(
-			"parameter 'lines' is " + QString::number(lineId) + ", and there is no such layer.");
+	const MeshModel* lineLayer = &layerWithId(context.document, options.lineLayer, "lines");
 	if (lineLayer != &layer && lineLayer->cm.en == 0)
 		throw MLException(
 			"the layer '" + lineLayer->label() + "' named as 'lines' holds no edges.");
@@ -226,26 +228,32 @@ FilterResults apply(const FilterContext& context)
 	FilterResults     results;
 	Stopwatch         total, stage;
 	// Rays next to each other read points next to each other.
-	const PreparedCloud prepared = inSpatialOrder(prepareCloud(points.positions, points.normals));
-	const Camera        camera =
-		cameraOf(parameters, prepared, double(options.image.width) / options.image.height);
-	const NeighborSearch       search(prepared.cloud.positions);
+	const PreparedCloud  prepared = inSpatialOrder(prepareCloud(points.positions, points.normals));
+	const Camera         camera   = cameraOf(options, prepared);
+	const NeighborSearch search(prepared.cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(
 		prepared.cloud, search, {}, context.progress.sub(0.0, 0.2, "Finding neighborhoods"));
 	const ControlPoints    control{prepared.cloud, search, minimum.spacing};
-	const Eigen::Matrix3Xd colors = colorsOf(colorBy, layer, points, prepared, control, minimum);
+	const Eigen::Matrix3Xd colors =
+		colorsOf(options.colorBy, layer, points, prepared, control, minimum);
 	const PictureLines lines = lineLayer == &layer ? PictureLines() : linesOf(*lineLayer, prepared);
 	std::unique_ptr<const PointSetSurface> surface;
-	if (kind == SurfaceKind::CurvatureDriven)
+	if (options.surface == SurfaceKind::CurvatureDriven)
 		surface = std::make_unique<CurvatureDrivenSurface>(control);
 	else
 		surface = std::make_unique<MovingLeastSquaresSurface>(control);
-	const RayTracer tracer(*surface, control, options.image);
+	const RayTracer tracer(*surface, control, options.picture.image);
 	results.seconds("preparation", stage.lap());
 	const Picture picture = renderPicture(
-		tracer, control, colors, lines, camera, options, context.progress.sub(0.2, 1.0, "Drawing"));
+		tracer,
+		control,
+		colors,
+		lines,
+		camera,
+		options.picture,
+		context.progress.sub(0.2, 1.0, "Drawing"));
 	results.seconds("rendering", stage.lap());
-	savePicture(picture, path);
+	savePicture(picture, options.file);
 
 	results.count("points", points.size());
 	results.count("pixels", std::ptrdiff_t(picture.width) * picture.height);
@@ -276,8 +284,7 @@ FilterSpec rayTraceFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_NONE,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

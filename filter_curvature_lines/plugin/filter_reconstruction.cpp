@@ -6,6 +6,7 @@
 #include "help_text.h"
 #include "polygon_layer.h"
 #include "polyline_layer.h"
+#include "shared_parameters.h"
 
 #include "normal_estimation.h"
 #include "reconstruction.h"
@@ -16,15 +17,19 @@ namespace {
 
 enum class EstimateNormals { IfMissing, Never, Always };
 
-RichParameterList parameters(const MeshDocument&)
+struct Options {
+	ReconstructionOptions pipeline;
+	EstimateNormals       estimateNormals        = EstimateNormals::IfMissing;
+	bool                  keepIntermediateLayers = false;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const ReconstructionOptions defaults;
-	RichParameterList           list;
-	list.addParam(RichEnum(
+	ReconstructionOptions& pipeline = options.pipeline;
+	table.row(
 		"method",
-		0,
-		QStringList() << "Position Field"
-					  << "Traced Lines",
+		pipeline.method,
+		Choice{{"Position Field", "Traced Lines"}},
 		"Method",
 		"How the mesh is found.<ul>"
 		"<li><b>Position Field</b>: on a triangulation of the cleaned points, by two phases that "
@@ -32,90 +37,80 @@ RichParameterList parameters(const MeshDocument&)
 		"the principal directions; rims and sharp creases become edges, and every face is "
 		"certified to be "
 		"a disk</li>"
-		"<li><b>Traced Lines</b>: between traced lines of curvature, as published</li></ul>"));
-	list.addParam(RichInt(
+		"<li><b>Traced Lines</b>: between traced lines of curvature, as published</li></ul>");
+	table.row(
 		"target_vertices",
-		0,
+		pipeline.tracing.targetVertices,
+		Integer{0, 10000000},
 		"Target number of vertices (0: automatic)",
 		"About how many vertices the mesh gets (at most 10000000); 0 = automatic: from Chord error "
-		"if that is set, else from the size of the cloud."));
-	list.addParam(RichFloat(
+		"if that is set, else from the size of the cloud.");
+	table.row(
 		"epsilon",
-		0,
+		pipeline.tracing.epsilon,
+		Real{0.0, 0.5},
 		"Chord error (of diagonal; 0: automatic)",
 		"Sets the density of the lines if no target number is given: how far the chord between two "
 		"lines leaves the surface, as a fraction of the bounding-box diagonal (0 = automatic, at "
-		"most 0.5)."));
-	list.addParam(RichFloat(
+		"most 0.5).");
+	table.row(
 		"anisotropy",
-		static_cast<Scalarm>(defaults.anisotropy),
+		pipeline.anisotropy,
+		Real{1.0, 10.0},
 		"Anisotropy (1: square faces)",
 		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; "
 		"1 = "
-		"not at all)."));
-	list.addParam(RichFloat(
+		"not at all).");
+	table.row(
 		"points_per_vertex",
-		static_cast<Scalarm>(defaults.pointsPerVertex),
+		pipeline.pointsPerVertex,
+		Real{0.0, 1e6},
 		"Points used per vertex (0: all)",
 		"Position Field with a target number of vertices: a cloud with more points per vertex is "
 		"thinned to so "
 		"many, evenly and not below 20000 points, once its outliers are out (0 = use all points, "
 		"which takes "
 		"longer). Keep all to have all in the cleaned cloud.",
-		true));
-	addMeshParameters(list);
-	list.addParam(RichBool(
-		"reject_outliers", defaults.rejectOutliers, "Reject outliers", "Leave outliers out."));
-	list.addParam(RichBool(
+		advancedParameter);
+	meshParameters(table, pipeline.mesh);
+	table.row(
+		"reject_outliers",
+		pipeline.rejectOutliers,
+		Flag(),
+		"Reject outliers",
+		"Leave outliers out.");
+	table.row(
 		"denoise",
-		defaults.denoise,
+		pipeline.denoise,
+		Flag(),
 		"Denoise",
-		"Move the points onto the surface. Switch it off for exact data."));
-	list.addParam(RichBool(
+		"Move the points onto the surface. Switch it off for exact data.");
+	table.row(
 		"smooth_directions",
-		defaults.smoothDirections,
+		pipeline.smoothDirections,
+		Flag(),
 		"Smooth the directions",
 		"Traced Lines: smooth the field of principal directions before tracing. A position field "
 		"always "
-		"is, as far as the directions are uncertain."));
-	list.addParam(RichEnum(
+		"is, as far as the directions are uncertain.");
+	table.row(
 		"estimate_normals",
-		0,
-		QStringList() << "If Missing"
-					  << "Never"
-					  << "Always",
+		options.estimateNormals,
+		Choice{{"If Missing", "Never", "Always"}},
 		"Estimate normals",
 		"Whether to compute normals from the positions (plane fits, oriented outward).<ul>"
 		"<li><b>If Missing</b>: when most points have none</li>"
 		"<li><b>Never</b>: use those of the layer</li>"
-		"<li><b>Always</b>: replace those of the layer</li></ul>"));
-	addScaleMode(list, true);
-	list.addParam(RichBool(
+		"<li><b>Always</b>: replace those of the layer</li></ul>");
+	scaleModeParameter(table, pipeline.curvature.scaleMode, advancedParameter);
+	table.row(
 		"keep_intermediate_layers",
-		false,
+		options.keepIntermediateLayers,
+		Flag(),
 		"Keep intermediate layers",
 		"Add the cleaned cloud, with its curvature and how far each point moved, and the lines as "
 		"layers of their "
-		"own."));
-	return list;
-}
-
-ReconstructionOptions reconstructionOptions(const Parameters& parameters)
-{
-	ReconstructionOptions options;
-	using Method   = ReconstructionOptions::Method;
-	options.method = parameters.choice("method") == 0 ? Method::PositionField : Method::TracedLines;
-	options.anisotropy             = parameters.real("anisotropy", 1.0, 10.0);
-	options.pointsPerVertex        = parameters.real("points_per_vertex", 0.0, 1e6);
-	options.rejectOutliers         = parameters.flag("reject_outliers");
-	options.denoise                = parameters.flag("denoise");
-	options.smoothDirections       = parameters.flag("smooth_directions");
-	options.curvature.scaleMode    = scaleMode(parameters);
-	options.mesh                   = meshOptions(parameters);
-	options.keepLines              = parameters.flag("keep_intermediate_layers");
-	options.tracing.targetVertices = parameters.integer("target_vertices", 0, 10000000);
-	options.tracing.epsilon        = parameters.real("epsilon", 0.0, 0.5);
-	return options;
+		"own.");
 }
 
 bool mostNormalsMissing(const LayerPoints& points)
@@ -195,19 +190,18 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 		results.seconds(stage, seconds);
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	const Parameters&           parameters = context.parameters;
-	const ReconstructionOptions options    = reconstructionOptions(parameters);
-	const auto estimate      = static_cast<EstimateNormals>(parameters.choice("estimate_normals"));
-	const bool intermediates = parameters.flag("keep_intermediate_layers");
+	ReconstructionOptions pipeline = options.pipeline;
+	pipeline.keepLines             = options.keepIntermediateLayers;
 
 	const MeshModel& source = currentLayer(context.document);
 	LayerPoints      points = readPoints(source);
 	FilterResults    results;
 	Stopwatch        total;
-	const bool       estimated = estimate == EstimateNormals::Always ||
-	                       (estimate == EstimateNormals::IfMissing && mostNormalsMissing(points));
+	const bool       estimated =
+		options.estimateNormals == EstimateNormals::Always ||
+		(options.estimateNormals == EstimateNormals::IfMissing && mostNormalsMissing(points));
 	if (estimated) {
 		estimateMissingNormals(points, context.progress.sub(0.0, 0.1, "Estimating normals"));
 		results.seconds("normals", total.seconds());
@@ -218,7 +212,7 @@ FilterResults apply(const FilterContext& context)
 
 	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
 	const ReconstructionResult result =
-		reconstruct(prepared.cloud, options, context.progress.sub(0.1, 1.0, ""));
+		reconstruct(prepared.cloud, pipeline, context.progress.sub(0.1, 1.0, ""));
 	if (result.mesh.mesh.faceCount() == 0)
 		throw MLException(
 			"no face was found: the cloud is too sparse for the chosen density, or (Traced Lines) "
@@ -226,7 +220,7 @@ FilterResults apply(const FilterContext& context)
 			"umbilic everywhere. Raise 'target_vertices', or check that the normals are right.");
 
 	NewLayers layers(context.document);
-	if (intermediates) {
+	if (options.keepIntermediateLayers) {
 		MeshModel& cleaned = layers.add("cleaned cloud", source);
 		writeCleanedCloud(cleaned, result, prepared);
 		if (result.lines.lines() > 0)
@@ -274,8 +268,7 @@ FilterSpec reconstructionFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_NONE,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

@@ -3,55 +3,56 @@
 #include "curvature_output.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "shared_parameters.h"
 
 namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+struct Options {
+	EstimateOptions estimate;
+	bool            correctNormals = false;
+	CurvatureOutput output;
+	UmbilicOptions  umbilics;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	RichParameterList list;
-	addEstimateParameters(list);
-	list.addParam(RichBool(
+	estimateParameters(table, options.estimate);
+	table.row(
 		"correct_normals",
-		false,
+		options.correctNormals,
+		Flag(),
 		"Correct normals",
 		"Replace the normals by those of the fitted surface; PD1 and PD2 are then tangent to them. "
 		"(With Scale Paper the curvature is estimated once more with the corrected normals; the "
-		"adaptive estimate does not depend on the given ones beyond their side.)"));
-	addCurvatureOutput(list);
-	addUmbilicRatio(list);
-	return list;
+		"adaptive estimate does not depend on the given ones beyond their side.)");
+	curvatureOutputParameters(table, options.output);
+	umbilicParameter(table, options.umbilics);
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	const Parameters&     parameters = context.parameters;
-	const EstimateOptions options    = estimateOptions(parameters);
-	const CurvatureOutput output     = curvatureOutput(parameters);
-	const bool            correct    = parameters.flag("correct_normals");
-	UmbilicOptions        umbilicOptions;
-	umbilicOptions.ratio = umbilicRatio(parameters);
-
 	MeshModel&    layer  = currentLayer(context.document);
 	LayerPoints   points = readOrientedPoints(layer);
 	FilterResults results;
 	Stopwatch     total, stage;
-	const auto    estimate = correct
-	                             ? context.cache.estimateAndCorrect(points, options, context.progress)
-	                             : context.cache.estimate(points, options, context.progress);
+	const auto    estimate =
+        options.correctNormals
+			   ? context.cache.estimateAndCorrect(points, options.estimate, context.progress)
+			   : context.cache.estimate(points, options.estimate, context.progress);
 	results.seconds("curvature", stage.lap());
 
-	const UmbilicRegions umbilics =
-		findUmbilics(estimate->prepared.cloud, estimate->field, estimate->minimum, umbilicOptions);
+	const UmbilicRegions umbilics = findUmbilics(
+		estimate->prepared.cloud, estimate->field, estimate->minimum, options.umbilics);
 	const VertexCurvatures values =
 		perVertex(points, estimate->prepared, estimate->field, umbilics.umbilic);
 
-	if (correct)
+	if (options.correctNormals)
 		for (Index i = 0; i < points.size(); ++i)
 			for (int c = 0; c < 3; ++c)
 				layer.cm.vert[points.vertex[i]].N()[c] = Scalarm(points.normals(c, i));
-	writeCurvatureOutput(layer, points, estimate->prepared.diagonal, values, output);
+	writeCurvatureOutput(layer, points, estimate->prepared.diagonal, values, options.output);
 
 	reportCurvature(results, estimate->prepared, estimate->minimum, values);
 	results.count("iterations", estimate->field.iterations);
@@ -92,8 +93,7 @@ FilterSpec robustCurvatureFilter()
 		MeshModel::MM_NONE,
 		MeshModel::MM_VERTNORMAL | MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR |
 			MeshModel::MM_VERTCURVDIR,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

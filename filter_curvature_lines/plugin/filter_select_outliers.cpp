@@ -9,44 +9,49 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+struct Options {
+	OutlierOptions rejection;
+	bool           deleteSelected = false;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const OutlierOptions defaults;
-	RichParameterList    list;
-	list.addParam(RichEnum(
+	table.row(
 		"mode",
-		0,
-		QStringList() << "Robust"
-					  << "Paper",
+		options.rejection.mode,
+		Choice{{"Robust", "Paper"}},
 		"Mode",
 		"What counts as a vote against a point.<ul>"
 		"<li><b>Robust</b>: its height above the surfaces its neighbours fitted</li>"
 		"<li><b>Paper</b>: it relies on neighbours that do not rely on it (published rule; it sees "
-		"wrong normals only)</li></ul>"));
-	list.addParam(RichFloat(
+		"wrong normals only)</li></ul>");
+	table.row(
 		"sensitivity",
-		Scalarm(defaults.sensitivity),
+		options.rejection.sensitivity,
+		Real{0.5, 100.0},
 		"Sensitivity (noise units)",
 		"Robust mode: heights above this many noise units are votes against the point (0.5 to "
 		"100). "
-		"Smaller values reject more."));
-	list.addParam(RichFloat(
+		"Smaller values reject more.");
+	table.row(
 		"vote_threshold",
-		Scalarm(defaults.voteThreshold),
+		options.rejection.voteThreshold,
+		Real{0.0, 1.0},
 		"Vote threshold (0 to 1)",
-		"A point is an outlier when more than this share of the votes is against it (0 to 1)."));
-	list.addParam(RichInt(
+		"A point is an outlier when more than this share of the votes is against it (0 to 1).");
+	table.row(
 		"rounds",
-		defaults.rounds,
+		options.rejection.rounds,
+		Integer{1, 20},
 		"Rounds",
 		"How often at most the estimate is repeated without the outliers found so far (1 to 20).",
-		true));
-	list.addParam(RichBool(
+		advancedParameter);
+	table.row(
 		"delete_selected",
-		false,
+		options.deleteSelected,
+		Flag(),
 		"Delete the outliers",
-		"Delete the selected points (and faces that use them) at once."));
-	return list;
+		"Delete the selected points (and faces that use them) at once.");
 }
 
 // Faces must not point to deleted vertices.
@@ -75,21 +80,14 @@ Index deleteVertices(CMeshO& mesh, const std::vector<std::size_t>& doomed)
 	return static_cast<Index>(doomed.size());
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	const Parameters& parameters = context.parameters;
-	OutlierOptions    options;
-	options.mode          = static_cast<OutlierOptions::Mode>(parameters.choice("mode"));
-	options.sensitivity   = parameters.real("sensitivity", 0.5, 100.0);
-	options.voteThreshold = parameters.real("vote_threshold", 0.0, 1.0);
-	options.rounds        = parameters.integer("rounds", 1, 20);
-	const bool erase      = parameters.flag("delete_selected");
-
 	MeshModel&          layer  = currentLayer(context.document);
 	const LayerPoints   points = readOrientedPoints(layer);
 	Stopwatch           total;
 	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
-	const OutlierResult rejected = rejectOutliers(prepared.cloud, options, context.progress);
+	const OutlierResult rejected =
+		rejectOutliers(prepared.cloud, options.rejection, context.progress);
 
 	// A point nowhere is no part of the surface; one that only lacks its normal cannot be judged.
 	std::vector<std::size_t> selected;
@@ -115,7 +113,7 @@ FilterResults apply(const FilterContext& context)
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
 	results.count("duplicates", prepared.duplicates);
 	results.count("rounds", rejected.roundsUsed);
-	results.count("deleted", erase ? deleteVertices(layer.cm, selected) : 0);
+	results.count("deleted", options.deleteSelected ? deleteVertices(layer.cm, selected) : 0);
 	results.real("noise", rejected.heightDeviation * prepared.diagonal);
 	results.seconds("total", total.seconds());
 	return results;
@@ -142,8 +140,7 @@ FilterSpec selectOutliersFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_VERTFLAGSELECT | MeshModel::MM_VERTNUMBER | MeshModel::MM_FACENUMBER,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

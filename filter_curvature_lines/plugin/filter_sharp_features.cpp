@@ -12,56 +12,50 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+struct Options {
+	CreaseOptions creases; // spacing in model units
+	bool          denoise = true;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const CreaseOptions defaults;
-	RichParameterList   list;
-	list.addParam(RichFloat(
+	table.row(
 		"min_angle",
-		Scalarm(defaults.minAngle),
+		options.creases.minAngle,
+		Real{5.0, 150.0},
 		"Smallest angle (degrees)",
 		"A line is kept if somewhere the normals of its two faces differ by this many degrees (5 "
 		"to "
 		"150); from there it is followed until six tenths of it are left. Lower values find softer "
-		"edges, and more that noise makes up."));
-	list.addParam(RichFloat(
+		"edges, and more that noise makes up.");
+	table.row(
 		"spacing",
-		Scalarm(defaults.spacing),
+		options.creases.spacing,
+		Length(),
 		"Vertex spacing (length; 0: automatic)",
 		"Distance between the vertices of the lines, in the layer's units; 0 = automatic, 0.7 "
 		"times "
-		"the point spacing."));
-	list.addParam(RichBool(
+		"the point spacing.");
+	table.row(
 		"denoise",
-		true,
+		options.denoise,
+		Flag(),
 		"Denoise first",
 		"Search a denoised copy of the points (as <i>Denoise Point Cloud by Robust Curvature</i> "
 		"makes it). Without, the points and their normals are taken as they are: for clouds "
 		"denoised "
 		"before, and exact ones.",
-		true));
-	return list;
+		advancedParameter);
 }
 
-CreaseOptions creaseOptions(const Parameters& parameters, double diagonal)
+FilterResults apply(const FilterContext& context, const Options& options)
 {
-	CreaseOptions options;
-	options.minAngle = parameters.real("min_angle", 5.0, 150.0);
-	options.spacing  = parameters.length("spacing") / diagonal;
-	return options;
-}
-
-FilterResults apply(const FilterContext& context)
-{
-	const Parameters& parameters = context.parameters;
-	creaseOptions(parameters, 1.0); // complain before the long part
-
 	MeshModel&        cloudLayer = currentLayer(context.document);
 	const LayerPoints points     = readOrientedPoints(cloudLayer);
 	Stopwatch         total, stage;
 	FilterResults     results;
 	PreparedCloud     prepared = prepareCloud(points.positions, points.normals);
-	if (parameters.flag("denoise")) {
+	if (options.denoise) {
 		RobustDenoisingResult denoised =
 			denoiseRobustly(prepared.cloud, {}, context.progress.sub(0.0, 0.8, "Denoising"));
 		prepared.cloud.positions = std::move(denoised.positions);
@@ -71,11 +65,10 @@ FilterResults apply(const FilterContext& context)
 	const NeighborSearch       search(prepared.cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(
 		prepared.cloud, search, {}, context.progress.sub(0.8, 0.85, "Finding neighborhoods"));
+	CreaseOptions creaseOptions = options.creases;
+	creaseOptions.spacing /= prepared.diagonal;
 	const Creases creases = findCreases(
-		prepared.cloud,
-		minimum,
-		creaseOptions(parameters, prepared.diagonal),
-		context.progress.sub(0.85, 1.0, "Finding creases"));
+		prepared.cloud, minimum, creaseOptions, context.progress.sub(0.85, 1.0, "Finding creases"));
 	results.seconds("creases", stage.lap());
 
 	double length = 0.0;
@@ -133,8 +126,7 @@ FilterSpec sharpFeaturesFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_NONE,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

@@ -9,30 +9,25 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+void parameters(ParameterTable& table, DirectionSmoothingOptions& options)
 {
-	const DirectionSmoothingOptions defaults;
-	RichParameterList               list;
-	list.addParam(RichFloat(
+	table.row(
 		"alpha",
-		Scalarm(defaults.alpha),
+		options.alpha,
+		Real{0.0, 1.0},
 		"Smoothness (0 to 1)",
-		"0 keeps the directions, 1 gives the smoothest field."));
-	list.addParam(RichInt(
+		"0 keeps the directions, 1 gives the smoothest field.");
+	table.row(
 		"iterations",
-		defaults.iterations,
+		options.iterations,
+		Integer{1, 10000},
 		"Iterations",
 		"Largest number of iterations of the optimiser (1 to 10000).",
-		true));
-	return list;
+		advancedParameter);
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const DirectionSmoothingOptions& options)
 {
-	DirectionSmoothingOptions options;
-	options.alpha      = context.parameters.real("alpha", 0.0, 1.0);
-	options.iterations = context.parameters.integer("iterations", 1, 10000);
-
 	MeshModel&           layer  = currentLayer(context.document);
 	const LayerPoints    points = readOrientedPoints(layer);
 	Stopwatch            total, stage;
@@ -88,8 +83,7 @@ FilterSpec smoothDirectionsFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_VERTCURVDIR,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

@@ -5,6 +5,7 @@
 #include "filter_table.h"
 #include "help_text.h"
 #include "polyline_layer.h"
+#include "shared_parameters.h"
 
 #include "reconstruction.h"
 
@@ -12,15 +13,22 @@ namespace curvature_lines {
 
 namespace {
 
-RichParameterList parameters(const MeshDocument&)
+enum class Method { TracedLines, PositionField };
+
+struct Options {
+	Method             method = Method::TracedLines;
+	LineTracingOptions tracing; // spacings in model units
+	UmbilicOptions     umbilics;
+	bool               smoothDirections = true;
+};
+
+void parameters(ParameterTable& table, Options& options)
 {
-	const LineTracingOptions defaults;
-	RichParameterList        list;
-	list.addParam(RichEnum(
+	LineTracingOptions& tracing = options.tracing;
+	table.row(
 		"method",
-		0,
-		QStringList() << "Traced Lines"
-					  << "Position Field",
+		options.method,
+		Choice{{"Traced Lines", "Position Field"}},
 		"Method",
 		"<ul><li><b>Traced Lines</b>: one line after the other follows the directions, as "
 		"published; they are where "
@@ -29,86 +37,85 @@ RichParameterList parameters(const MeshDocument&)
 		"at once and "
 		"evenly spaced; clean the cloud first. The parameters below do not concern it, except "
 		"epsilon and "
-		"the target number</li></ul>"));
-	list.addParam(RichFloat(
+		"the target number</li></ul>");
+	table.row(
 		"epsilon",
-		Scalarm(defaults.epsilon),
+		tracing.epsilon,
+		Real{1e-9, 0.5},
 		"Chord error (of diagonal)",
 		"Sets the density of the lines: neighbouring lines are as far apart as a chord that leaves "
-		"the surface by this fraction of the bounding-box diagonal (1e-9 to 0.5)."));
-	list.addParam(RichInt(
+		"the surface by this fraction of the bounding-box diagonal (1e-9 to 0.5).");
+	table.row(
 		"target_vertices",
-		0,
+		tracing.targetVertices,
+		Integer{0, 10000000},
 		"Target number of crossings (0: none)",
 		"If not 0, the chord error is found so that the lines cross in about so many points: the "
-		"vertices of the mesh to come (at most 10000000)."));
-	list.addParam(RichFloat(
+		"vertices of the mesh to come (at most 10000000).");
+	table.row(
 		"min_spacing",
-		0,
+		tracing.minSpacing,
+		Length(),
 		"Minimum spacing (length; 0: automatic)",
 		"Lines of one family are never closer than this, in the layer's units; 0 = automatic, from "
-		"the point spacing."));
-	list.addParam(RichFloat(
+		"the point spacing.");
+	table.row(
 		"max_spacing",
-		0,
+		tracing.maxSpacing,
+		Length(),
 		"Maximum spacing (length; 0: automatic)",
 		"The distance between lines where the surface is flat, in the layer's units; 0 = "
-		"automatic."));
-	list.addParam(RichFloat(
+		"automatic.");
+	table.row(
 		"tolerance",
-		Scalarm(defaults.tolerance),
+		tracing.tolerance,
+		Real{1e-6, 1.0},
 		"Step tolerance (relative)",
 		"Relative error per step; smaller values trace in smaller steps (1e-6 to 1).",
-		true));
-	list.addParam(RichEnum(
+		advancedParameter);
+	table.row(
 		"projection",
-		static_cast<int>(defaults.projection),
-		QStringList() << "Mixed"
-					  << "Locally Optimal"
-					  << "Weighted Average",
+		tracing.projection,
+		Choice{{"Mixed", "Locally Optimal", "Weighted Average"}},
 		"Projection",
 		"How line points are kept on the surface.<ul>"
 		"<li><b>Mixed</b>: mean of point average and tangent planes, whose errors cancel</li>"
 		"<li><b>Locally Optimal</b>: as published in 2009</li>"
 		"<li><b>Weighted Average</b>: as published in 2007</li></ul>",
-		true));
-	list.addParam(RichFloat(
+		advancedParameter);
+	table.row(
 		"stop_factor",
-		Scalarm(defaults.stopFactor),
+		tracing.stopFactor,
+		Real{0.1, 1.0},
 		"Stop factor",
 		"A line ends where it comes closer to the next one than this times the distance new lines "
 		"keep "
 		"(0.1 to 1). Small values let lines run on through narrow places: gaps are less even, and "
 		"the mesh "
 		"between the lines has more quads (0.5: about 99 %).",
-		true));
-	addUmbilicRatio(list);
-	list.addParam(RichBool(
+		advancedParameter);
+	umbilicParameter(table, options.umbilics);
+	table.row(
 		"smooth_directions",
-		true,
+		options.smoothDirections,
+		Flag(),
 		"Smooth the directions",
 		"Smooth the principal directions first, unless those on the layer are smoothed already. "
 		"The "
-		"layer keeps its own."));
-	return list;
+		"layer keeps its own.");
 }
 
-LineTracingOptions tracingOptions(const Parameters& parameters, double diagonal)
+LineTracingOptions tracingOptions(const LineTracingOptions& given, double diagonal)
 {
-	LineTracingOptions options;
-	options.epsilon        = parameters.real("epsilon", 1e-9, 0.5);
-	options.targetVertices = parameters.integer("target_vertices", 0, 10000000);
-	options.minSpacing     = parameters.length("min_spacing") / diagonal;
-	options.maxSpacing     = parameters.length("max_spacing") / diagonal;
+	LineTracingOptions options = given;
+	options.minSpacing /= diagonal;
+	options.maxSpacing /= diagonal;
 	if (options.maxSpacing > 0.0 && options.maxSpacing < options.minSpacing)
 		throw MLException(
 			"parameter 'max_spacing' is smaller than 'min_spacing'; raise it, or set it to 0 "
 			"(automatic).");
-	options.tolerance  = parameters.real("tolerance", 1e-6, 1.0);
-	options.stopFactor = parameters.real("stop_factor", 0.1, 1.0);
 	if (options.targetVertices > 0) // of a mesh
 		options.gradation = meshGradation;
-	options.projection = static_cast<ProjectionKind>(parameters.choice("projection"));
 	return options;
 }
 
@@ -125,13 +132,11 @@ LineNetwork positionFieldLines(
 	return reconstruct(cloud, options, progress).lines;
 }
 
-FilterResults apply(const FilterContext& context)
+FilterResults apply(const FilterContext& context, const Options& given)
 {
-	const Parameters& parameters = context.parameters;
-	tracingOptions(parameters, 1.0); // complain before the long part
-	UmbilicOptions umbilicOptions;
-	umbilicOptions.ratio    = umbilicRatio(parameters);
-	umbilicOptions.smoothed = parameters.flag("smooth_directions");
+	tracingOptions(given.tracing, 1.0); // complain before the long part
+	UmbilicOptions umbilicOptions = given.umbilics;
+	umbilicOptions.smoothed       = given.smoothDirections;
 
 	MeshModel&        cloudLayer = currentLayer(context.document);
 	const LayerPoints points     = readOrientedPoints(cloudLayer);
@@ -143,7 +148,7 @@ FilterResults apply(const FilterContext& context)
 	const PointCloud&        cloud    = estimate.prepared.cloud;
 	results.seconds("curvature", stage.lap());
 
-	if (parameters.flag("smooth_directions") && !curvature.ownDirections) {
+	if (given.smoothDirections && !curvature.ownDirections) {
 		DirectionSmoothingResult smoothed = smoothDirections(
 			cloud, *curvature.field, {}, context.progress.sub(0.3, 0.5, "Smoothing directions"));
 		auto field      = std::make_shared<CurvatureField>(*curvature.field);
@@ -158,10 +163,10 @@ FilterResults apply(const FilterContext& context)
 	const VoronoiCells cells(
 		cloud.positions, context.progress.sub(0.5, 0.6, "Finding Voronoi cells"));
 	results.seconds("voronoi", stage.lap());
-	const LineTracingOptions options = tracingOptions(parameters, estimate.prepared.diagonal);
+	const LineTracingOptions options = tracingOptions(given.tracing, estimate.prepared.diagonal);
 	const Progress           tracing = context.progress.sub(0.6, 1.0, "Tracing lines");
 	const LineNetwork        lines =
-        parameters.choice("method") == 1
+        given.method == Method::PositionField
 				   ? positionFieldLines(cloud, options, tracing)
 				   : traceLines(
                   cloud, *curvature.field, estimate.minimum, umbilics, cells, options, tracing);
@@ -228,8 +233,7 @@ FilterSpec traceLinesFilter()
 		FilterPlugin::SINGLE_MESH,
 		MeshModel::MM_NONE,
 		MeshModel::MM_NONE,
-		parameters,
-		apply};
+		{parameters, apply}};
 }
 
 } // namespace curvature_lines

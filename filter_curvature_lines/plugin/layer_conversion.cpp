@@ -74,6 +74,21 @@ MeshModel& currentLayer(MeshDocument& document)
 	return *document.mm();
 }
 
+int currentLayerId(const MeshDocument& document)
+{
+	return document.mm() == nullptr ? -1 : document.mm()->id();
+}
+
+const MeshModel& layerWithId(const MeshDocument& document, int id, const QString& parameter)
+{
+	const MeshModel* layer = document.getMesh(id);
+	if (layer == nullptr)
+		throw MLException(
+			"parameter '" + parameter + "' is " + QString::number(id) +
+			", and there is no such layer.");
+	return *layer;
+}
+
 void requireSameMatrix(const MeshModel& a, const MeshModel& b, const QString& names)
 {
 	for (int r = 0; r < 4; ++r)
@@ -315,7 +330,7 @@ CurvatureField withLayerDirections(
 }
 
 NewLayers::NewLayers(MeshDocument& document) :
-		m_document(document), m_current(document.mm() ? document.mm()->id() : -1)
+		m_document(document), m_current(currentLayerId(document))
 {
 }
 

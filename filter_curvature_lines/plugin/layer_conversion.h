@@ -13,6 +13,10 @@ struct CurvatureEstimate;
 
 // The current layer; throws when the document has none.
 MeshModel& currentLayer(MeshDocument& document);
+// Its id, -1 when the document has none. Never throws.
+int currentLayerId(const MeshDocument& document);
+// Throws when there is no layer of this id, which the parameter of this name has.
+const MeshModel& layerWithId(const MeshDocument& document, int id, const QString& parameter);
 
 // Throws unless the matrices of both layers are the same but for rounding: what is local to one would lie
 // beside the other.

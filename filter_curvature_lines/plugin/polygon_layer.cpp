@@ -133,29 +133,6 @@ writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud
 	return topologyOf(written);
 }
 
-void addMeshParameters(RichParameterList& list)
-{
-	const MeshFinishingOptions defaults;
-	list.addParam(RichBool(
-		"triangulate",
-		defaults.triangulate,
-		"Triangulate",
-		"Cut all faces into triangles, for programs that know no others."));
-	list.addParam(RichBool(
-		"close_holes",
-		defaults.closeHoles,
-		"Close holes",
-		"Fill holes that are small against the mesh."));
-}
-
-MeshFinishingOptions meshOptions(const Parameters& parameters)
-{
-	MeshFinishingOptions options;
-	options.triangulate = parameters.flag("triangulate");
-	options.closeHoles  = parameters.flag("close_holes");
-	return options;
-}
-
 void reportMesh(FilterResults& results, const MeshTopology& t)
 {
 	results.count("vertices", t.vertices);

@@ -5,9 +5,8 @@
 #include <common/ml_document/mesh_document.h>
 
 #include "filter_results.h"
-#include "parameters.h"
 
-#include "mesh_finishing.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 
@@ -15,9 +14,7 @@ namespace curvature_lines {
 MeshTopology
 writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud& frame);
 
-// What the filters that end in a mesh share: two parameters and the counts.
-void addMeshParameters(RichParameterList& list);
-MeshFinishingOptions meshOptions(const Parameters& parameters);
+// The counts that filters return which end in a mesh.
 void reportMesh(FilterResults& results, const MeshTopology& topology);
 
 } // namespace curvature_lines

@@ -406,4 +406,11 @@ TangentFrame::TangentFrame(const Eigen::Vector3d& normal) : n(normal)
 	v              = {-n.x() * n.y() * a, 1.0 - n.y() * n.y() * a, -n.y()};
 }
 
+Eigen::Vector3d tangentNear(const Eigen::Vector3d& d, const Eigen::Vector3d& n)
+{
+	const Eigen::Vector3d tangent = d - n * n.dot(d);
+	const double          length  = tangent.norm();
+	return length > 1e-6 ? Eigen::Vector3d(tangent / length) : TangentFrame(n).u;
+}
+
 } // namespace curvature_lines

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "members.h"
 #include "progress.h"
 
 namespace curvature_lines {
@@ -46,6 +47,11 @@ struct MinimumNeighborhoodOptions {
 	Index candidates = 40;
 };
 
+inline bool operator==(const MinimumNeighborhoodOptions& a, const MinimumNeighborhoodOptions& b)
+{
+	return members<2>(a) == members<2>(b);
+}
+
 struct MinimumNeighborhoods {
 	// Up to six per point, one per 60 degree slice of the tangent plane, the first centred on the closest.
 	NeighborLists       neighbors;
@@ -70,5 +76,9 @@ struct TangentFrame {
 	Eigen::Vector2d toPlane(const Eigen::Vector3d& d) const { return {d.dot(u), d.dot(v)}; }
 	Eigen::Vector3d toSpace(const Eigen::Vector2d& d) const { return d.x() * u + d.y() * v; }
 };
+
+// The unit tangent at a unit normal n that is nearest to d; TangentFrame(n).u where d has no tangent part (shorter than
+// 1e-6).
+Eigen::Vector3d tangentNear(const Eigen::Vector3d& d, const Eigen::Vector3d& n);
 
 } // namespace curvature_lines

@@ -13,6 +13,11 @@ struct AdaptiveScaleOptions {
 	Index maxProbes = 2048;
 };
 
+inline bool operator==(const AdaptiveScaleOptions& a, const AdaptiveScaleOptions& b)
+{
+	return members<2>(a) == members<2>(b);
+}
+
 // How much an estimate at one place relies on each scale.
 struct ScaleMixture {
 	// (index into ScaleSelection::scales, share), the largest first

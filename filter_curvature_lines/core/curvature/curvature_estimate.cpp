@@ -6,6 +6,26 @@
 
 namespace curvature_lines {
 
+namespace {
+
+// The options of the mode that is not chosen at their defaults.
+CurvatureOptions effective(CurvatureOptions options)
+{
+	if (options.scaleMode == ScaleMode::Adaptive)
+		options.paper = {};
+	else
+		options.adaptive = {};
+	return options;
+}
+
+} // namespace
+
+bool operator==(const CurvatureOptions& a, const CurvatureOptions& b)
+{
+	const CurvatureOptions x = effective(a), y = effective(b);
+	return members<3>(x) == members<3>(y);
+}
+
 CurvatureField estimateCurvature(
 	const PointCloud&           cloud,
 	const NeighborSearch&       search,
@@ -31,12 +51,21 @@ Eigen::Matrix3Xd surfaceNormals(const CurvatureField& field)
 void makeTangent(const Eigen::Matrix3Xd& normals, CurvatureField& field)
 {
 	for (Index i = 0; i < field.size(); ++i) {
-		const Eigen::Vector3d n = normals.col(i), d = field.d1.col(i);
-		const Eigen::Vector3d tangent = d - n * n.dot(d);
-		const double          length  = tangent.norm();
-		field.d1.col(i) = length > 1e-6 ? Eigen::Vector3d(tangent / length) : TangentFrame(n).u;
-		field.d2.col(i) = n.cross(field.d1.col(i));
+		const Eigen::Vector3d n = normals.col(i);
+		field.d1.col(i)         = tangentNear(field.d1.col(i), n);
+		field.d2.col(i)         = n.cross(field.d1.col(i));
 	}
+}
+
+void adoptDirections(
+	const Eigen::Matrix3Xd& directions, const Eigen::Matrix3Xd& normals, CurvatureField& field)
+{
+	for (Index i = 0; i < field.size(); ++i) {
+		const Eigen::Vector3d d = directions.col(i);
+		if (d.allFinite() && d.norm() >= 1e-6)
+			field.d1.col(i) = d;
+	}
+	makeTangent(normals, field);
 }
 
 } // namespace curvature_lines

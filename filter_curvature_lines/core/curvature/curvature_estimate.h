@@ -17,6 +17,9 @@ struct CurvatureOptions {
 	RobustCurvatureOptions paper;
 };
 
+// Whether both ask for the same estimate: options of the mode that is not chosen do not count.
+bool operator==(const CurvatureOptions& a, const CurvatureOptions& b);
+
 // Directions are tangent to cloud.normals with Paper. With Adaptive they are tangent to the fitted
 // surface, see surfaceNormals().
 CurvatureField estimateCurvature(
@@ -31,5 +34,10 @@ Eigen::Matrix3Xd surfaceNormals(const CurvatureField& field);
 
 // Turns the directions into the tangent planes of `normals` (3 x N unit), as little as possible.
 void makeTangent(const Eigen::Matrix3Xd& normals, CurvatureField& field);
+
+// Replaces d1 by `directions` (3 x N, any length) where they are usable (finite and longer than 1e-6), and d2 with it,
+// both tangent to `normals` (3 x N unit).
+void adoptDirections(
+	const Eigen::Matrix3Xd& directions, const Eigen::Matrix3Xd& normals, CurvatureField& field);
 
 } // namespace curvature_lines

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "curvature_field.h"
+#include "members.h"
 #include "neighborhoods.h"
 
 namespace curvature_lines {
@@ -23,6 +24,11 @@ struct RobustCurvatureOptions {
 	Index maxPoints   = 120;  // cap of the operating region
 	Index maxPairs    = 2000; // above, a deterministic subsample of the pairs
 };
+
+inline bool operator==(const RobustCurvatureOptions& a, const RobustCurvatureOptions& b)
+{
+	return members<9>(a) == members<9>(b);
+}
 
 CurvatureField robustCurvature(
 	const PointCloud&             cloud,

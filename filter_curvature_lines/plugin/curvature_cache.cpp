@@ -4,15 +4,21 @@
 
 #include <cstring>
 
+#include "layer_curvature.h"
+
+#include "raw_curvatures.h"
+
 namespace curvature_lines {
 
 namespace {
 
+// Enough for a chain of filters on two layers, each before and after its normals were corrected.
 constexpr std::size_t maxEntries = 4;
-// An estimate takes about half a kilobyte per point: older ones go beyond this many points.
+// Of all entries but the latest: about half a gigabyte, as an estimate takes half a kilobyte per point (measured).
 constexpr Index maxPoints = 1000000;
 
-// 64-bit hash of a sequence of doubles (multiply-xorshift; each word is mixed in order).
+// 64-bit hash of a sequence of doubles: each is multiplied in by 2^64 over the golden ratio (Knuth's multiplicative
+// hashing), and its high bits are folded into the low ones. The start is the fraction of pi, an arbitrary number.
 class Fingerprint {
 public:
 	void add(double value)
@@ -41,6 +47,13 @@ std::uint64_t fingerprint(const LayerPoints& points)
 	return print.value();
 }
 
+// As a filter writes them, but for the status of umbilics.
+RawCurvatures valuesOf(const LayerPoints& points, const CurvatureEstimate& estimate)
+{
+	const std::vector<char> umbilic(estimate.field.size(), 0);
+	return rawCurvatures(points.normals, estimate.prepared, estimate.field, umbilic);
+}
+
 } // namespace
 
 CurvatureEstimate::CurvatureEstimate(
@@ -67,9 +80,10 @@ void CurvatureEstimate::adoptNormals(LayerPoints& points)
 	Eigen::Matrix3Xd corrected = points.normals;
 	for (Index i = 0; i < points.size(); ++i)
 		if (const Index r = prepared.representative[i]; r >= 0)
-			corrected.col(i) = forVertex(field.correctedNormals.col(r), points, prepared, i)
-			                       .cast<Scalarm>()
-			                       .cast<double>();
+			corrected.col(i) =
+				normalForRaw(field.correctedNormals.col(r), points.normals, prepared, i)
+					.cast<Scalarm>()
+					.cast<double>();
 	points.normals = corrected;
 	for (Index r = 0; r < field.size(); ++r)
 		prepared.cloud.normals.col(r) = points.normals.col(prepared.source[r]).normalized();
@@ -115,31 +129,38 @@ std::shared_ptr<const CurvatureEstimate> CurvatureCache::estimateAndCorrect(
 LayerCurvature
 CurvatureCache::ofLayer(const MeshModel& layer, const LayerPoints& points, const Progress& progress)
 {
+	const std::uint64_t print = fingerprint(points);
 	LayerCurvature      result;
-	const std::uint64_t print   = fingerprint(points);
-	bool                carried = false;
-	{
-		const std::lock_guard<std::mutex> lock(m_mutex);
-		for (const Entry& entry : m_entries)
-			if (entry.points == print && carriesCurvature(layer, points, *entry.estimate)) {
-				result.estimate = entry.estimate;
-				carried         = true;
-				break;
-			}
-	}
+	result.estimate    = carriedBy(layer, points, print);
+	const bool carried = result.estimate != nullptr;
 	if (!carried)
 		result.estimate = find(print, EstimateOptions());
 	result.reused = result.estimate != nullptr;
 	if (!result.reused)
 		result.estimate = estimate(points, {}, progress);
 
-	result.ownDirections = carried && !carriesDirections(layer, points, *result.estimate);
-	if (result.ownDirections)
-		result.field =
-			std::make_shared<CurvatureField>(withLayerDirections(layer, points, *result.estimate));
-	else
-		result.field = {result.estimate, &result.estimate->field};
+	const CurvatureEstimate& estimate = *result.estimate;
+	result.ownDirections = carried && !carriesDirections(layer, points, valuesOf(points, estimate));
+	if (!result.ownDirections) {
+		result.field = {result.estimate, &estimate.field};
+		return result;
+	}
+	auto field = std::make_shared<CurvatureField>(estimate.field);
+	adoptDirections(
+		readDirections(layer, points, estimate.prepared), estimate.prepared.cloud.normals, *field);
+	result.field = field;
 	return result;
+}
+
+std::shared_ptr<const CurvatureEstimate>
+CurvatureCache::carriedBy(const MeshModel& layer, const LayerPoints& points, std::uint64_t print)
+{
+	const std::lock_guard<std::mutex> lock(m_mutex);
+	for (const Entry& entry : m_entries)
+		if (entry.points == print &&
+		    carriesCurvature(layer, points, valuesOf(points, *entry.estimate)))
+			return entry.estimate;
+	return nullptr;
 }
 
 void CurvatureCache::store(const Entry& entry)

@@ -15,7 +15,6 @@
 #include "layer_conversion.h"
 
 #include "curvature_estimate.h"
-#include "umbilics.h"
 
 namespace curvature_lines {
 
@@ -79,6 +78,9 @@ private:
 
 	std::shared_ptr<const CurvatureEstimate>
 	find(std::uint64_t points, const EstimateOptions& options);
+	// The estimate that wrote the curvature on the layer; null if none of these did.
+	std::shared_ptr<const CurvatureEstimate>
+	carriedBy(const MeshModel& layer, const LayerPoints& points, std::uint64_t print);
 	void store(const Entry& entry);
 
 	std::list<Entry> m_entries; // latest first

@@ -2,35 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature_output.h"
 
+#include <map>
+
+#include "layer_curvature.h"
+
 #include "curvature_colors.h"
 
 namespace curvature_lines {
-
-namespace {
-
-double scalarOf(CurvatureScalar scalar, const VertexCurvatures& values, Index i)
-{
-	const double k1 = values.k1[i], k2 = values.k2[i];
-	switch (scalar) {
-	case CurvatureScalar::Mean:
-		return 0.5 * (k1 + k2);
-	case CurvatureScalar::Gaussian:
-		return k1 * k2;
-	case CurvatureScalar::K1:
-		return k1;
-	case CurvatureScalar::K2:
-		return k2;
-	case CurvatureScalar::Curvedness:
-		return curvedness(k1, k2);
-	case CurvatureScalar::ShapeIndex:
-		return shapeIndex(k1, k2);
-	case CurvatureScalar::Confidence:
-		return values.confidence[i];
-	}
-	return 0.0;
-}
-
-} // namespace
 
 void curvatureOutputParameters(ParameterTable& table, CurvatureOutput& output)
 {
@@ -57,28 +35,28 @@ void curvatureOutputParameters(ParameterTable& table, CurvatureOutput& output)
 }
 
 void writeCurvatureOutput(
-	MeshModel&              layer,
-	const LayerPoints&      points,
-	double                  diagonal,
-	const VertexCurvatures& values,
-	const CurvatureOutput&  output)
+	MeshModel&             layer,
+	const LayerPoints&     points,
+	double                 diagonal,
+	const RawCurvatures&   values,
+	const CurvatureOutput& output)
 {
-	Eigen::VectorXd quality(points.size());
-	for (Index i = 0; i < points.size(); ++i)
-		quality[i] = scalarOf(output.scalar, values, i);
+	const Eigen::VectorXd quality = scalarsOf(values, output.scalar);
 	writeCurvature(layer, points, values);
 	writeQuality(layer, points, quality);
 	if (output.colorize && output.scalar == CurvatureScalar::Mean)
 		writeColors(layer, points, curvatureColors(values.k1, values.k2, 0.5 * diagonal));
-	else if (output.colorize)
-		writeColorRamp(layer, points, values.status);
+	else if (output.colorize) {
+		const auto [from, to] = rampRange(quality, values.status);
+		writeColorRamp(layer, from, to);
+	}
 }
 
 void reportCurvature(
 	FilterResults&              results,
 	const PreparedCloud&        prepared,
 	const MinimumNeighborhoods& minimum,
-	const VertexCurvatures&     values)
+	const RawCurvatures&        values)
 {
 	std::map<PointStatus, Index> counts;
 	for (const PointStatus status : values.status)

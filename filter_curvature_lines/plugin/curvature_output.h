@@ -6,9 +6,10 @@
 #include "layer_conversion.h"
 #include "parameter_table.h"
 
-namespace curvature_lines {
+#include "neighborhoods.h"
+#include "raw_curvatures.h"
 
-enum class CurvatureScalar { Mean, Gaussian, K1, K2, Curvedness, ShapeIndex, Confidence };
+namespace curvature_lines {
 
 struct CurvatureOutput {
 	CurvatureScalar scalar   = CurvatureScalar::Mean;
@@ -19,16 +20,16 @@ void curvatureOutputParameters(ParameterTable& table, CurvatureOutput& output);
 
 // K1, K2, PD1, PD2, attributes, quality and colour.
 void writeCurvatureOutput(
-	MeshModel&              layer,
-	const LayerPoints&      points,
-	double                  diagonal, // of the cloud, model units
-	const VertexCurvatures& values,
-	const CurvatureOutput&  output);
+	MeshModel&             layer,
+	const LayerPoints&     points,
+	double                 diagonal, // of the cloud, model units
+	const RawCurvatures&   values,
+	const CurvatureOutput& output);
 
 void reportCurvature(
 	FilterResults&              results,
 	const PreparedCloud&        prepared,
 	const MinimumNeighborhoods& minimum,
-	const VertexCurvatures&     values);
+	const RawCurvatures&        values);
 
 } // namespace curvature_lines

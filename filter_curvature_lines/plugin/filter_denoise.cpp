@@ -109,7 +109,7 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& given)
 	const Stopwatch     total;
 	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
 	options.robust.noise /= prepared.diagonal;
-	if (options.robust.noise > 0.5)
+	if (options.robust.noise > 0.5) // larger than the shape itself
 		throw MLException(
 			"parameter 'noise' is more than half the cloud's diagonal (" +
 			QString::number(prepared.diagonal) + ").");
@@ -149,6 +149,7 @@ FilterSpec denoiseFilter()
 	return {
 		"Denoise Point Cloud by Robust Curvature",
 		"apply_coord_point_cloud_robust_denoising",
+		"Moves the points onto the surface and corrects the normals",
 		"Removes noise from a point cloud. Every point moves onto the surface that its neighbours "
 		"agree on: overlapping pieces of it are fitted, as large as the noise asks for and the "
 		"shape allows, and those that bend over a sharp edge do not count. The layer's normals "

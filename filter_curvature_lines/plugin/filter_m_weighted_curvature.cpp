@@ -6,6 +6,7 @@
 #include "shared_parameters.h"
 
 #include "m_weighted_curvature.h"
+#include "umbilics.h"
 
 namespace curvature_lines {
 
@@ -68,8 +69,8 @@ FilterResults apply(const FilterContext& context, const Options& options)
 		minimum,
 		options.estimate,
 		context.progress.sub(0.4, 1.0, "Estimating curvature"));
-	const VertexCurvatures values = perVertex(
-		points,
+	const RawCurvatures values = rawCurvatures(
+		points.normals,
 		prepared,
 		field,
 		findUmbilics(prepared.cloud, field, minimum, options.umbilics).umbilic);
@@ -87,6 +88,7 @@ FilterSpec mWeightedCurvatureFilter()
 	return {
 		"M-Weighted Curvature (Euler Least Squares)",
 		"compute_curvature_m_weighted_per_vertex",
+		"Principal curvatures and directions of a clean cloud, by Euler's theorem",
 		"Principal curvatures and directions of a point cloud from the directional curvatures "
 		"towards each point's neighbours, which Euler's theorem ties together: one small least "
 		"squares per point. Neighbours count most at a distance: close ones carry the noise, far "

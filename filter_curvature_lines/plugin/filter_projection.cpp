@@ -1,10 +1,10 @@
 // Curvature-Driven Projection: core/curvature_driven_projection on two layers.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 
 #include "filter_table.h"
 #include "help_text.h"
+#include "host_types.h"
 
 #include "curvature_driven_projection.h"
 
@@ -74,14 +74,10 @@ void parameters(ParameterTable& table, Options& options)
 		"layer: a denser cloud on the same surface.");
 }
 
-template<class Vertex>
-void place(Vertex& vertex, const PreparedCloud& frame, const ProjectedPoints& projected, Index i)
+void place(CVertexO& vertex, const PreparedCloud& frame, const ProjectedPoints& projected, Index i)
 {
-	const Eigen::Vector3d position = frame.toModel(projected.positions.col(i));
-	for (int c = 0; c < 3; ++c) {
-		vertex.P()[c] = Scalarm(position[c]);
-		vertex.N()[c] = Scalarm(projected.normals(c, i));
-	}
+	vertex.P() = toPoint(frame.toModel(projected.positions.col(i)));
+	vertex.N() = toPoint(projected.normals.col(i));
 }
 
 void writeProjected(
@@ -133,17 +129,8 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	const ProjectedPoints projected =
 		projectPoints(surface, unit, {}, context.progress.sub(0.3, 1.0, "Projecting"));
 
-	double      squares = 0.0, largest = 0.0;
-	std::size_t moved = 0;
-	for (Index i = 0; i < static_cast<Index>(unit.cols()); ++i) {
-		if (!projected.projected[i])
-			continue;
-		const double step = prepared.diagonal * (projected.positions.col(i) - unit.col(i)).norm();
-		squares += step * step;
-		largest = std::max(largest, step);
-		++moved;
-	}
-	if (moved == 0)
+	const ProjectionMoves moves = movesOf(projected, unit, prepared.diagonal);
+	if (moves.projected == 0)
 		throw MLException(
 			"no point of 'proxy_mesh' is near the surface of 'control_mesh' (within three of its "
 			"point "
@@ -161,11 +148,11 @@ FilterResults apply(const FilterContext& context, const Options& options)
 		layers.keep(layer);
 	}
 	results.count("points", unit.cols());
-	results.count("projected", moved);
-	results.count("not_projected", unit.cols() - moved);
+	results.count("projected", moves.projected);
+	results.count("not_projected", unit.cols() - moves.projected);
 	results.count("iterations", projected.iterations);
-	results.real("moved_rms", std::sqrt(squares / moved));
-	results.real("moved_max", largest);
+	results.real("moved_rms", moves.rms);
+	results.real("moved_max", moves.largest);
 	results.seconds("total", total.seconds());
 	return results;
 }
@@ -177,6 +164,7 @@ FilterSpec projectionFilter()
 	return {
 		"Curvature-Driven Projection",
 		"compute_curvature_driven_projection",
+		"Moves vertices onto the smooth surface a cloud defines, or makes a cloud denser",
 		"Moves the vertices of a layer onto the smooth surface that a point cloud defines: near "
 		"every "
 		"vertex, the quadric of the surface's principal curvatures and directions. Also makes a "

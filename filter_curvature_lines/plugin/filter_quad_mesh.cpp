@@ -115,6 +115,7 @@ FilterSpec quadMeshFilter()
 	return {
 		"Build Curvature-Aligned Quad Mesh",
 		"generate_curvature_aligned_quad_mesh",
+		"Builds a quad-dominant mesh from a layer of curvature lines",
 		"Builds the mesh between lines of curvature: its vertices are the crossings of the two "
 		"families of lines, its edges run along the lines, and most of its faces are "
 		"quadrilaterals."

@@ -7,6 +7,7 @@
 
 #include "filter_table.h"
 #include "help_text.h"
+#include "host_types.h"
 
 #include "curvature_colors.h"
 #include "curvature_driven_projection.h"
@@ -23,7 +24,7 @@ enum class SurfaceKind { CurvatureDriven, MovingLeastSquares };
 enum class ColorBy { Plain, Curvature, VertexColor };
 enum class CameraKind { Automatic, Given };
 
-const Eigen::Vector3d plainColor(0.80, 0.79, 0.76);
+const Eigen::Vector3d plainColor(0.80, 0.79, 0.76); // a light, slightly warm grey, by taste
 
 struct Options {
 	QString        file;
@@ -139,7 +140,7 @@ Camera cameraOf(const Options& options, const PreparedCloud& prepared)
 	Camera camera   = options.camera;
 	camera.position = prepared.toUnit(camera.position);
 	camera.target   = prepared.toUnit(camera.target);
-	if (!((camera.target - camera.position).cross(camera.up).norm() > 1e-12))
+	if (!camera.isUpright())
 		throw MLException(
 			"'camera_up' runs along the view from 'camera_position' to 'camera_target'; give "
 			"another "
@@ -184,8 +185,7 @@ PictureLines linesOf(const MeshModel& layer, const PreparedCloud& prepared)
 	PictureLines lines;
 	lines.vertices.resize(3, layer.cm.vert.size());
 	for (std::size_t v = 0; v < layer.cm.vert.size(); ++v) {
-		const Point3m& p      = layer.cm.vert[v].cP();
-		lines.vertices.col(v) = prepared.toUnit({double(p[0]), double(p[1]), double(p[2])});
+		lines.vertices.col(v) = prepared.toUnit(toEigen(layer.cm.vert[v].cP()));
 	}
 	std::vector<Eigen::Vector3d> colors;
 	for (const CEdgeO& edge : layer.cm.edge) {
@@ -270,6 +270,7 @@ FilterSpec rayTraceFilter()
 	return {
 		"Ray-Trace Point-Set Surface",
 		"save_ray_traced_point_set_image",
+		"Draws the surface between the points into a PNG file",
 		"Draws the smooth surface between the points of a cloud, without a mesh and without a "
 		"screen: "
 		"every pixel's ray is followed onto the surface itself. Lines of another layer can be "

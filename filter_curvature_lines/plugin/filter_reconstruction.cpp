@@ -4,6 +4,7 @@
 
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_curvature.h"
 #include "polygon_layer.h"
 #include "polyline_layer.h"
 #include "shared_parameters.h"
@@ -14,8 +15,6 @@
 namespace curvature_lines {
 
 namespace {
-
-enum class EstimateNormals { IfMissing, Never, Always };
 
 struct Options {
 	ReconstructionOptions pipeline;
@@ -113,30 +112,6 @@ void parameters(ParameterTable& table, Options& options)
 		"own.");
 }
 
-bool mostNormalsMissing(const LayerPoints& points)
-{
-	const auto usable = [](const auto& n) { return n.allFinite() && (n.array() != 0.0).any(); };
-	Index      count  = 0;
-	for (Index i = 0; i < points.size(); ++i)
-		count += usable(points.normals.col(i));
-	return 2 * count < points.size();
-}
-
-// Gives every point with a finite position a normal.
-void estimateMissingNormals(LayerPoints& points, const Progress& progress)
-{
-	std::vector<Index> finite;
-	for (Index i = 0; i < points.size(); ++i)
-		if (points.positions.col(i).allFinite())
-			finite.push_back(i);
-	Eigen::Matrix3Xd positions(3, finite.size());
-	for (std::size_t k = 0; k < finite.size(); ++k)
-		positions.col(k) = points.positions.col(finite[k]);
-	const Eigen::Matrix3Xd normals = estimateNormals(positions, {}, progress);
-	for (std::size_t k = 0; k < finite.size(); ++k)
-		points.normals.col(finite[k]) = normals.col(k);
-}
-
 void writeCleanedCloud(
 	MeshModel& layer, const ReconstructionResult& result, const PreparedCloud& frame)
 {
@@ -156,9 +131,10 @@ void writeCleanedCloud(
 	points.normals = result.cloud.normals;
 	writePositions(layer, points, own, result.cloud.positions);
 	writeNormals(layer, points, own, result.cloud.normals);
-	const VertexCurvatures values = perVertex(points, own, result.field, result.umbilics.umbilic);
+	const RawCurvatures values =
+		rawCurvatures(points.normals, own, result.field, result.umbilics.umbilic);
 	writeCurvature(layer, points, values);
-	writeQuality(layer, points, 0.5 * (values.k1 + values.k2));
+	writeQuality(layer, points, scalarsOf(values, CurvatureScalar::Mean));
 	Eigen::VectorXd moved(n);
 	for (Index i = 0; i < n; ++i)
 		moved[i] =
@@ -199,11 +175,13 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	LayerPoints      points = readPoints(source);
 	FilterResults    results;
 	Stopwatch        total;
-	const bool       estimated =
-		options.estimateNormals == EstimateNormals::Always ||
-		(options.estimateNormals == EstimateNormals::IfMissing && mostNormalsMissing(points));
+	const bool       estimated = mustEstimate(options.estimateNormals, points.normals);
 	if (estimated) {
-		estimateMissingNormals(points, context.progress.sub(0.0, 0.1, "Estimating normals"));
+		points.normals = estimateNormalsWhereFinite(
+			points.positions,
+			points.normals,
+			{},
+			context.progress.sub(0.0, 0.1, "Estimating normals"));
 		results.seconds("normals", total.seconds());
 	}
 	else {
@@ -251,6 +229,7 @@ FilterSpec reconstructionFilter()
 	return {
 		"Surface Reconstruction: Curvature-Aligned Quads",
 		"generate_surface_reconstruction_curvature_aligned",
+		"From a cloud to a curvature-aligned quad mesh, in one step",
 		"Makes a quad-dominant mesh from a point cloud, its edges aligned with the principal "
 		"directions of curvature. In one step: outliers are left out, normals and positions "
 		"denoised, curvature and directions estimated, creases and rims found, and the faces "

@@ -5,6 +5,8 @@
 #include "help_text.h"
 #include "shared_parameters.h"
 
+#include "umbilics.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -45,12 +47,12 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	const UmbilicRegions umbilics = findUmbilics(
 		estimate->prepared.cloud, estimate->field, estimate->minimum, options.umbilics);
-	const VertexCurvatures values =
-		perVertex(points, estimate->prepared, estimate->field, umbilics.umbilic);
+	const RawCurvatures values =
+		rawCurvatures(points.normals, estimate->prepared, estimate->field, umbilics.umbilic);
 
 	if (options.correctNormals)
 		for (Index i = 0; i < points.size(); ++i)
-			for (int c = 0; c < 3; ++c)
+			for (int c = 0; c < 3; ++c) // those that are not finite stay as they are
 				layer.cm.vert[points.vertex[i]].N()[c] = Scalarm(points.normals(c, i));
 	writeCurvatureOutput(layer, points, estimate->prepared.diagonal, values, options.output);
 
@@ -67,6 +69,7 @@ FilterSpec robustCurvatureFilter()
 	return {
 		"Robust Curvature (M-Estimation)",
 		"compute_curvature_robust_per_vertex",
+		"Principal curvatures and directions of a noisy cloud, by M-estimation",
 		"Principal curvatures and directions of a point cloud, insensitive to noise, outliers and "
 		"wrong normals. An M-estimator (Geman-McClure) gives what disagrees less weight, down to "
 		"none, so that outliers and points across a sharp edge do not count."

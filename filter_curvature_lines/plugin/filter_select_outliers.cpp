@@ -126,6 +126,7 @@ FilterSpec selectOutliersFilter()
 	return {
 		"Select Outliers by Robust Curvature",
 		"compute_selection_point_cloud_outliers_by_curvature",
+		"Selects the points that do not lie on the surface",
 		"Selects the points of a cloud that do not lie on the surface the others agree on. Every "
 		"point's robust curvature estimate votes on the points around it; a point with more votes "
 		"against it than the threshold allows, or with nothing around it, is an outlier. The "

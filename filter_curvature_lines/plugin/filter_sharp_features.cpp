@@ -76,7 +76,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	for (const CreaseCurve& curve : creases.curves) {
 		length += prepared.diagonal * curve.length();
 		closed += curve.closed;
-		concave += curve.angle.sum() < 0.0;
+		concave += curve.concave();
 	}
 	results.count("vertices", 0);
 	results.count("edges", 0);
@@ -106,6 +106,7 @@ FilterSpec sharpFeaturesFilter()
 	return {
 		"Extract Sharp Feature Lines",
 		"generate_sharp_feature_lines",
+		"Finds the sharp edges of the surface as a new polyline layer",
 		"Finds the sharp edges of a point cloud, without a mesh: lines where two faces meet at an "
 		"angle, and "
 		"the corners where they end together. Both faces are continued to where they intersect, so "

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_curvature.h"
 
 #include "direction_smoothing.h"
+#include "umbilics.h"
 
 namespace curvature_lines {
 
@@ -48,7 +50,8 @@ FilterResults apply(const FilterContext& context, const DirectionSmoothingOption
 	field.d1                      = std::move(smoothed.d1);
 	field.d2                      = std::move(smoothed.d2);
 	const UmbilicRegions umbilics = findUmbilics(estimate.prepared.cloud, field, estimate.minimum);
-	writeCurvature(layer, points, perVertex(points, estimate.prepared, field, umbilics.umbilic));
+	writeCurvature(
+		layer, points, rawCurvatures(points.normals, estimate.prepared, field, umbilics.umbilic));
 
 	results.count("points", points.size());
 	results.count("invalid", estimate.prepared.nonFinite + estimate.prepared.zeroNormals);
@@ -68,6 +71,7 @@ FilterSpec smoothDirectionsFilter()
 	return {
 		"Smooth Principal Directions",
 		"apply_curvature_direction_smoothing_per_vertex",
+		"Smooths the principal directions where they are uncertain",
 		"Smooths the field of principal directions of a point cloud as a whole: each direction "
 		"stays near its estimate where k1 - k2 is well above its standard error, and follows its "
 		"neighbours where it is not (near umbilics, on flat parts, under noise). Directions do not "

@@ -62,6 +62,7 @@ private:
 struct FilterSpec {
 	QString                   name; // menu text and key in .mlx files: never change it
 	QString                   pythonName;
+	QString                   summary;     // one line of plain text, for lists
 	QString                   help;        // HTML
 	int                       filterClass; // FilterPlugin::FilterClass, or-ed
 	FilterPlugin::FilterArity arity;
@@ -71,17 +72,5 @@ struct FilterSpec {
 
 // A filter's id is its position.
 const std::vector<FilterSpec>& filterTable();
-
-FilterSpec robustCurvatureFilter();
-FilterSpec selectOutliersFilter();
-FilterSpec denoiseFilter();
-FilterSpec smoothDirectionsFilter();
-FilterSpec traceLinesFilter();
-FilterSpec sharpFeaturesFilter();
-FilterSpec quadMeshFilter();
-FilterSpec reconstructionFilter();
-FilterSpec mWeightedCurvatureFilter();
-FilterSpec projectionFilter();
-FilterSpec rayTraceFilter();
 
 } // namespace curvature_lines

@@ -215,6 +215,7 @@ FilterSpec traceLinesFilter()
 	return {
 		"Trace Lines of Curvature",
 		"generate_curvature_lines",
+		"Traces the lines of curvature as a new polyline layer",
 		"Traces the lines of curvature of a point cloud, the curves that follow the two families "
 		"of "
 		"principal directions, without a mesh. Lines start where the curvature estimate is most "

@@ -7,6 +7,13 @@
 
 namespace curvature_lines {
 
+namespace {
+
+// Hosts redraw at every call, see progress.h.
+constexpr auto interval = std::chrono::milliseconds(100);
+
+} // namespace
+
 Progress hostProgress(vcg::CallBackPos* callback)
 {
 	if (callback == nullptr)
@@ -21,7 +28,7 @@ Progress hostProgress(vcg::CallBackPos* callback)
 	auto state = std::make_shared<State>();
 	return Progress([state, callback](double fraction, const char* what) {
 		const auto now = Clock::now();
-		if (now - state->last < std::chrono::milliseconds(100))
+		if (now - state->last < interval)
 			return true;
 		state->last    = now;
 		state->percent = std::max(state->percent, static_cast<int>(100.0 * fraction));

@@ -7,6 +7,8 @@
 
 #include <common/mlexception.h>
 
+#include "host_types.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -32,15 +34,9 @@ void add(RichParameterList& list, const ParameterText& text, const HostValue& va
 	list.addParam(HostParameter(text.name, value, text.label, text.help, text.advanced));
 }
 
-Point3m toPoint(const Eigen::Vector3d& v)
-{
-	return {Scalarm(v.x()), Scalarm(v.y()), Scalarm(v.z())};
-}
-
 Eigen::Vector3d finitePoint(const RichParameterList& given, const QString& name)
 {
-	const Point3m         p = given.getPoint3m(name);
-	const Eigen::Vector3d point(p[0], p[1], p[2]);
+	const Eigen::Vector3d point = toEigen(given.getPoint3m(name));
 	if (!point.allFinite())
 		throw outOfRange(name, "not finite", "three numbers");
 	return point;

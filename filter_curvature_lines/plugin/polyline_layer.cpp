@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "polyline_layer.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <common/mlexception.h>
+
+#include "host_types.h"
+
+#include "line_chains.h"
 
 namespace curvature_lines {
 
@@ -16,17 +19,7 @@ using Allocator = vcg::tri::Allocator<CMeshO>;
 
 const char* const sourceAttribute = "curvature_lines_source";
 
-Point3m toPoint(const Eigen::Vector3d& v)
-{
-	return {Scalarm(v.x()), Scalarm(v.y()), Scalarm(v.z())};
-}
-
-Eigen::Vector3d toEigen(const Point3m& p)
-{
-	return {double(p[0]), double(p[1]), double(p[2])};
-}
-
-// Orange and blue, told apart by colour-blind eyes as well.
+// Vermilion and blue of the palette by Okabe and Ito (2008): colour-blind people can tell them apart, too.
 vcg::Color4b familyColor(int family)
 {
 	return family == 1 ? vcg::Color4b(213, 94, 0, 255) : vcg::Color4b(0, 114, 178, 255);
@@ -51,69 +44,20 @@ void writeEdges(CMeshO& mesh, const std::vector<Index>& offsets, const std::vect
 	}
 }
 
-// The one or two vertices that edges join to each vertex.
-std::vector<std::vector<Index>> neighborsAlongEdges(const CMeshO& mesh)
+LineChains chainsOf(const CMeshO& mesh)
 {
-	std::vector<std::vector<Index>> neighbors(mesh.vert.size());
-	for (const CEdgeO& edge : mesh.edge) {
-		if (edge.IsD())
-			continue;
-		const auto a = static_cast<Index>(vcg::tri::Index(mesh, edge.cV(0)));
-		const auto b = static_cast<Index>(vcg::tri::Index(mesh, edge.cV(1)));
-		neighbors[a].push_back(b);
-		neighbors[b].push_back(a);
-	}
-	for (const auto& row : neighbors)
-		if (row.size() > 2)
-			throw MLException(
-				"the lines of the current layer branch; 'Trace Lines of Curvature' makes lines "
-				"that "
-				"do not.");
-	return neighbors;
-}
-
-// Vertices in order along each line. An open line starts at its end of lower index, a closed one at
-// its lowest vertex towards the lower neighbour: as they were written.
-struct Chains {
-	std::vector<std::vector<Index>> vertices;
-	std::vector<char>               closed;
-};
-
-Chains chainsOf(const CMeshO& mesh)
-{
-	const auto        neighbors = neighborsAlongEdges(mesh);
-	std::vector<char> visited(mesh.vert.size(), 0);
-	Chains            chains;
-	const auto        follow = [&](Index start) {
-        std::vector<Index> chain = {start};
-        visited[start]           = 1;
-        for (Index at = start;;) {
-            Index next = -1;
-            for (const Index n : neighbors[at])
-                if (!visited[n] && (next < 0 || n < next))
-                    next = n;
-            if (next < 0)
-                break;
-            visited[next] = 1;
-            chain.push_back(next);
-            at = next;
-        }
-        chains.vertices.push_back(std::move(chain));
-	};
-	const auto count = static_cast<Index>(neighbors.size());
-	for (Index v = 0; v < count; ++v) {
-		// All vertices of a line come before its far end, so the order of the lines stays, too.
-		if (!visited[v] && neighbors[v].size() == 1) {
-			follow(v);
-			chains.closed.push_back(0);
-		}
-	}
-	for (Index v = 0; v < count; ++v)
-		if (!visited[v] && neighbors[v].size() == 2) {
-			follow(v);
-			chains.closed.push_back(1);
-		}
-	return chains;
+	std::vector<std::array<Index, 2>> edges;
+	for (const CEdgeO& edge : mesh.edge)
+		if (!edge.IsD())
+			edges.push_back(
+				{static_cast<Index>(vcg::tri::Index(mesh, edge.cV(0))),
+			     static_cast<Index>(vcg::tri::Index(mesh, edge.cV(1)))});
+	std::optional<LineChains> chains = chainEdges(static_cast<Index>(mesh.vert.size()), edges);
+	if (!chains)
+		throw MLException(
+			"the lines of the current layer branch; 'Trace Lines of Curvature' makes lines that do "
+			"not.");
+	return *std::move(chains);
 }
 
 } // namespace
@@ -165,7 +109,7 @@ void writeCreases(MeshModel& layer, const Creases& creases, const PreparedCloud&
 			const Index v      = offsets[l] + k;
 			CVertexO&   vertex = mesh.vert[v];
 			vertex.P()         = toPoint(frame.toModel(curve.positions.col(k)));
-			vertex.N()         = toPoint((curve.left.col(k) + curve.right.col(k)).normalized());
+			vertex.N()         = toPoint(curve.normal(k));
 			vertex.Q()         = Scalarm(curve.angle[k] * 180.0 / EIGEN_PI);
 			vertex.C()         = familyColor(curve.angle[k] > 0.0 ? 1 : 2);
 			id[v]              = Scalarm(l);
@@ -188,21 +132,13 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 			"line_family, which files do not keep). Run 'Trace Lines of Curvature' "
 			"(generate_curvature_lines) on the point cloud first and leave its layer current.");
 
-	Chains                   chains = chainsOf(mesh);
-	std::vector<std::size_t> order(chains.vertices.size());
-	for (std::size_t l = 0; l < order.size(); ++l)
-		order[l] = l;
-	// In the order they were traced: by confidence.
-	std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-		return chains.vertices[a][0] < chains.vertices[b][0];
-	});
-
-	LineNetwork lines;
+	const LineChains chains = chainsOf(mesh); // in the order they were traced: by confidence
+	LineNetwork      lines;
 	lines.vertices.resize(3, mesh.vn);
 	lines.normals.resize(3, mesh.vn);
 	lines.curvature.resize(mesh.vn);
 	Index written = 0;
-	for (const std::size_t l : order) {
+	for (Index l = 0; l < chains.size(); ++l) {
 		const int lineFamily = int(std::lround(double(family[chains.vertices[l][0]])));
 		if (lineFamily != 1 && lineFamily != 2)
 			throw MLException("the attribute line_family of the current layer must be 1 or 2.");

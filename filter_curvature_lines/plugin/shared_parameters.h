@@ -6,6 +6,7 @@
 #include "parameter_table.h"
 
 #include "mesh_finishing.h"
+#include "umbilics.h"
 
 namespace curvature_lines {
 

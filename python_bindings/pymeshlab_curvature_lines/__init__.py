@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from importlib.metadata import version
 from pathlib import Path
 
@@ -17,19 +18,6 @@ __all__ = ["MeshSet", "__version__", "filters", "plugin_path"]
 __version__: str = version("pymeshlab-curvature-lines")
 
 _HOST = "2025.7"
-_FILTERS = {
-    "compute_curvature_robust_per_vertex": "Principal curvatures and directions of a noisy cloud, by M-estimation",
-    "compute_selection_point_cloud_outliers_by_curvature": "Selects the points that do not lie on the surface",
-    "apply_coord_point_cloud_robust_denoising": "Moves the points onto the surface and corrects the normals",
-    "apply_curvature_direction_smoothing_per_vertex": "Smooths the principal directions where they are uncertain",
-    "generate_curvature_lines": "Traces the lines of curvature as a new polyline layer",
-    "generate_sharp_feature_lines": "Finds the sharp edges of the surface as a new polyline layer",
-    "generate_curvature_aligned_quad_mesh": "Builds a quad-dominant mesh from a layer of curvature lines",
-    "generate_surface_reconstruction_curvature_aligned": "From a cloud to a curvature-aligned quad mesh, in one step",
-    "compute_curvature_m_weighted_per_vertex": "Principal curvatures and directions of a clean cloud, by Euler's theorem",
-    "compute_curvature_driven_projection": "Moves vertices onto the smooth surface a cloud defines, or makes a cloud denser",
-    "save_ray_traced_point_set_image": "Draws the surface between the points into a PNG file",
-}
 
 
 def plugin_path() -> Path:
@@ -39,7 +27,10 @@ def plugin_path() -> Path:
 
 def filters() -> dict[str, str]:
     """The names of the filters, each with one line about what it does."""
-    return dict(_FILTERS)
+    # The plugin lists them itself; it finds the libraries it needs because the host has loaded them.
+    listing = ctypes.CDLL(str(plugin_path())).curvature_lines_filters
+    listing.restype = ctypes.c_char_p
+    return dict(line.split("\t") for line in listing().decode().splitlines())
 
 
 def _load() -> type:
@@ -51,13 +42,14 @@ def _load() -> type:
         )
     import pymeshlab
 
-    # Already there after importlib.reload or the user's own load_plugin; the host refuses to load a file twice.
-    if _FILTERS.keys().isdisjoint(pymeshlab.filter_list()):
-        try:
+    try:
+        descriptions = filters()
+        # Already there after importlib.reload or the user's own load_plugin; the host refuses to load a file twice.
+        if descriptions.keys().isdisjoint(pymeshlab.filter_list()):
             pymeshlab.load_plugin(str(plugin_path()))
-        except pymeshlab.PyMeshLabException as error:
-            raise ImportError(f"pymeshlab {host} refuses {plugin_path()}: {error}") from None
-    for name, description in _FILTERS.items():
+    except (OSError, pymeshlab.PyMeshLabException) as error:
+        raise ImportError(f"pymeshlab {host} refuses {plugin_path()}: {error}") from None
+    for name, description in descriptions.items():
         method = pymeshlab.bind_function(name)
         method.__doc__ = description
         setattr(pymeshlab.MeshSet, name, method)

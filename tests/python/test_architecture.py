@@ -158,11 +158,7 @@ def test_a_room_needs_every_room_on_its_link_line(room):
     assert set(ROOMS[room]) <= used
 
 
-@pytest.mark.parametrize(
-    "ring",
-    [CORE, pytest.param(PLUGIN, marks=pytest.mark.xfail(strict=False, reason="layer_conversion and curvature_cache"))],
-    ids=["core", "plugin"],
-)
+@pytest.mark.parametrize("ring", [CORE, PLUGIN], ids=["core", "plugin"])
 def test_no_cycle_between_files(ring):
     assert cycle_in(uses(ring)) is None
 

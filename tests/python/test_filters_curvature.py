@@ -282,3 +282,17 @@ def test_the_same_call_on_the_same_cloud_writes_the_same(noisy_torus):
     first.apply_filter(CURVATURE)
     second.apply_filter(CURVATURE)
     assert snapshot(first) == snapshot(second)
+
+
+OTHER = {"region_scale": 4.5, "max_iterations": 1, "feature_gate": False, "boundary_threshold": 1.2}
+
+
+@pytest.mark.parametrize("parameter", OTHER)
+def test_no_estimate_with_other_parameters_is_served(noisy_torus, parameter):
+    default, other, again = (layer_of(noisy_torus) for _ in range(3))
+    default.apply_filter(CURVATURE, scale_mode="Paper")
+    other.apply_filter(CURVATURE, scale_mode="Paper", **{parameter: OTHER[parameter]})
+    again.apply_filter(CURVATURE, scale_mode="Paper")
+    values = [attributes(meshes) for meshes in (default, other, again)]
+    assert any(np.any(values[0][name] != values[1][name]) for name in ATTRIBUTES)
+    assert all(np.all(values[0][name] == values[2][name]) for name in ATTRIBUTES)

@@ -87,4 +87,33 @@ Eigen::Matrix3Xd estimateNormals(
 	return normals;
 }
 
+bool mustEstimate(EstimateNormals when, const Eigen::Matrix3Xd& normals)
+{
+	if (when != EstimateNormals::IfMissing)
+		return when == EstimateNormals::Always;
+	Eigen::Index usable = 0;
+	for (Eigen::Index i = 0; i < normals.cols(); ++i)
+		usable += normals.col(i).allFinite() && (normals.col(i).array() != 0.0).any();
+	return 2 * usable < normals.cols();
+}
+
+Eigen::Matrix3Xd estimateNormalsWhereFinite(
+	const Eigen::Matrix3Xd&        positions,
+	Eigen::Matrix3Xd               normals,
+	const NormalEstimationOptions& options,
+	const Progress&                progress)
+{
+	std::vector<Index> finite;
+	for (Index i = 0; i < static_cast<Index>(positions.cols()); ++i)
+		if (positions.col(i).allFinite())
+			finite.push_back(i);
+	Eigen::Matrix3Xd kept(3, finite.size());
+	for (std::size_t k = 0; k < finite.size(); ++k)
+		kept.col(k) = positions.col(finite[k]);
+	const Eigen::Matrix3Xd estimated = estimateNormals(kept, options, progress);
+	for (std::size_t k = 0; k < finite.size(); ++k)
+		normals.col(finite[k]) = estimated.col(k);
+	return normals;
+}
+
 } // namespace curvature_lines

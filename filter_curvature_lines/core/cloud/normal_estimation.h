@@ -18,4 +18,20 @@ Eigen::Matrix3Xd estimateNormals(
 	const NormalEstimationOptions& options  = {},
 	const Progress&                progress = {});
 
+// When normals that come with a cloud are replaced by estimated ones.
+enum class EstimateNormals {
+	IfMissing, // when fewer than half of them are usable: finite and not zero
+	Never,
+	Always
+};
+
+bool mustEstimate(EstimateNormals when, const Eigen::Matrix3Xd& normals); // 3 x N, any length
+
+// estimateNormals() for clouds with points whose positions (3 x N) are not finite: these keep theirs of `normals`.
+Eigen::Matrix3Xd estimateNormalsWhereFinite(
+	const Eigen::Matrix3Xd&        positions,
+	Eigen::Matrix3Xd               normals,
+	const NormalEstimationOptions& options  = {},
+	const Progress&                progress = {});
+
 } // namespace curvature_lines

@@ -1,4 +1,4 @@
-// Lengths of creases.
+// Lengths, normals and sides of creases.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crease_curves.h"
 
@@ -12,6 +12,16 @@ double CreaseCurve::length() const
 	if (closed && size() > 2)
 		sum += (positions.col(0) - positions.col(size() - 1)).norm();
 	return sum;
+}
+
+Eigen::Vector3d CreaseCurve::normal(Index v) const
+{
+	return (left.col(v) + right.col(v)).normalized();
+}
+
+bool CreaseCurve::concave() const
+{
+	return angle.sum() < 0.0;
 }
 
 } // namespace curvature_lines

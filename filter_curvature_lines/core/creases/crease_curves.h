@@ -21,6 +21,9 @@ struct CreaseCurve {
 
 	Index size() const { return static_cast<Index>(positions.cols()); }
 	double length() const;
+	// Unit, at vertex v: halfway between those of the two faces.
+	Eigen::Vector3d normal(Index v) const;
+	bool concave() const; // in the mean over its vertices
 };
 
 struct CreaseCorner {

@@ -45,6 +45,23 @@ ProjectedPoints projectPoints(
 	return result;
 }
 
+ProjectionMoves movesOf(const ProjectedPoints& points, const Eigen::Matrix3Xd& from, double unit)
+{
+	ProjectionMoves moves;
+	double          squares = 0.0;
+	for (Eigen::Index i = 0; i < from.cols(); ++i) {
+		if (!points.projected[i])
+			continue;
+		const double step = unit * (points.positions.col(i) - from.col(i)).norm();
+		squares += step * step;
+		moves.largest = std::max(moves.largest, step);
+		++moves.projected;
+	}
+	if (moves.projected > 0)
+		moves.rms = std::sqrt(squares / moves.projected);
+	return moves;
+}
+
 Eigen::Matrix3Xd
 scatterAround(const ControlPoints& control, const Eigen::Matrix3Xd& positions, Index count)
 {

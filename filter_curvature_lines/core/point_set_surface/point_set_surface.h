@@ -96,6 +96,16 @@ ProjectedPoints projectPoints(
 	const ProjectionOptions& options  = {},
 	const Progress&          progress = {});
 
+// How far points moved by projection; those that were not projected do not count.
+struct ProjectionMoves {
+	Index  projected = 0;
+	double rms = 0.0, largest = 0.0; // lengths; 0 if none was projected
+};
+
+// `unit`: how long a length of 1 is in the units wanted, such as PreparedCloud::diagonal for those of the model.
+ProjectionMoves
+movesOf(const ProjectedPoints& points, const Eigen::Matrix3Xd& from, double unit = 1.0);
+
 // `count` places around each of `positions` (3 x M), itself first: evenly spread over the area of one control
 // point, in the tangent plane there. Fixed; not yet on the surface.
 Eigen::Matrix3Xd

@@ -116,6 +116,12 @@ stepToQuadric(const LocalQuadric& q, const Vector3d& start, const Vector3d& dire
 
 } // namespace
 
+bool Camera::isUpright() const
+{
+	// In the unit frame, what is shorter is rounding.
+	return (target - position).cross(up).norm() > 1e-12;
+}
+
 Camera Camera::facing(const PointCloud& cloud, double aspectRatio, double fieldOfView)
 {
 	Camera camera;

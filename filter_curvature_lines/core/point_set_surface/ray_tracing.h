@@ -16,6 +16,9 @@ struct Camera {
 	Eigen::Vector3d position = {0, 0, 2}, target = {0, 0, 0}, up = {0, 1, 0};
 	double          fieldOfView = 30.0; // degrees, across the shorter side of the image
 
+	// Whether there is a view direction, and `up` says what is up in the picture: it does not run along the view.
+	bool isUpright() const;
+
 	// Looks at the middle of the points from the side of their normals' mean, from a little above, and sees
 	// all of them.
 	static Camera facing(const PointCloud& cloud, double aspectRatio, double fieldOfView = 30.0);

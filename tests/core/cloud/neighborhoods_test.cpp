@@ -102,6 +102,14 @@ TEST(TangentFrame, OrthonormalEverywhereAndContinuousButForOnePole)
 	}
 }
 
+TEST(TangentNear, IsTheTangentPartOrThatOfTheFrame)
+{
+	const Vector3d up(0, 0, 1);
+	EXPECT_EQ(tangentNear({0, 4, 3}, up), Vector3d(0, 1, 0));
+	EXPECT_EQ(tangentNear({0, 0, 3}, up), TangentFrame(up).u);
+	EXPECT_EQ(tangentNear(Vector3d::Zero(), up), TangentFrame(up).u);
+}
+
 TEST(MinimumNeighborhoods, OnePerSixtyDegreesAndProjectedClosest)
 {
 	const PointCloud           cloud = sampled("ellipsoid", 1500);

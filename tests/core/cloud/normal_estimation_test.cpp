@@ -3,6 +3,7 @@
 #include "normal_estimation.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -71,4 +72,31 @@ TEST(NormalEstimation, DegenerateInputGivesUnitVectorsOrAnError)
 		EXPECT_TRUE(normals.allFinite());
 		EXPECT_LT((normals.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-9);
 	}
+}
+
+TEST(NormalEstimation, MissingNormalsAreEstimatedWhenMostAreMissing)
+{
+	const double     nan = std::numeric_limits<double>::quiet_NaN();
+	Eigen::Matrix3Xd normals(3, 4);
+	normals << 0, 0, nan, 0, 0, 0, 1, 0, 1, 0, 0, 2; // the second is zero, the third not finite
+	EXPECT_FALSE(mustEstimate(EstimateNormals::IfMissing, normals)); // half of them are there
+	normals.col(3).setZero();
+	EXPECT_TRUE(mustEstimate(EstimateNormals::IfMissing, normals));
+	EXPECT_FALSE(mustEstimate(EstimateNormals::Never, normals));
+	EXPECT_TRUE(mustEstimate(EstimateNormals::Always, normals));
+}
+
+TEST(NormalEstimation, PointsThatAreNowhereKeepTheirNormals)
+{
+	const auto             cloud     = sample("sphere");
+	const Eigen::Matrix3Xd estimated = estimateNormals(cloud.positions);
+	Eigen::Matrix3Xd       positions(3, cloud.positions.cols() + 1);
+	positions << cloud.positions.leftCols(1), Eigen::Vector3d::Constant(INFINITY),
+		cloud.positions.rightCols(cloud.positions.cols() - 1);
+	Eigen::Matrix3Xd given        = Eigen::Matrix3Xd::Zero(3, positions.cols());
+	given.col(1)                  = Eigen::Vector3d(1, 2, 3);
+	const Eigen::Matrix3Xd result = estimateNormalsWhereFinite(positions, given);
+	EXPECT_EQ(Eigen::Vector3d(result.col(1)), Eigen::Vector3d(1, 2, 3));
+	EXPECT_EQ(result.col(0), estimated.col(0));
+	EXPECT_EQ(result.rightCols(estimated.cols() - 1), estimated.rightCols(estimated.cols() - 1));
 }

@@ -1,4 +1,4 @@
-// Lengths of creases.
+// Lengths, normals and sides of creases.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -23,6 +23,31 @@ TEST(CreaseCurve, OnePointHasNoLength)
 	CreaseCurve point;
 	point.positions = Eigen::Vector3d(1, 2, 3);
 	EXPECT_EQ(point.length(), 0.0);
+}
+
+// A right angle between the faces at each of three vertices.
+CreaseCurve bent()
+{
+	CreaseCurve curve;
+	curve.left.resize(3, 3);
+	curve.right.resize(3, 3);
+	curve.left.colwise()  = Eigen::Vector3d(0, 1, 0);
+	curve.right.colwise() = Eigen::Vector3d(0, 0, 1);
+	curve.angle           = Eigen::Vector3d(1.5, 1.5, -1.0);
+	return curve;
+}
+
+TEST(CreaseCurve, NormalIsBetweenThoseOfTheFaces)
+{
+	EXPECT_TRUE(bent().normal(1).isApprox(Eigen::Vector3d(0, 1, 1).normalized(), 1e-15));
+}
+
+TEST(CreaseCurve, IsConcaveInTheMean)
+{
+	CreaseCurve curve = bent();
+	EXPECT_FALSE(curve.concave());
+	curve.angle[2] = -4.0;
+	EXPECT_TRUE(curve.concave());
 }
 
 } // namespace

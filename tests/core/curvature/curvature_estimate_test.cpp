@@ -1,6 +1,9 @@
-// The choice between the two estimates, and directions turned into other tangent planes.
+// Which options ask for the same estimate, the choice between the two estimates, and directions turned into other tangent planes.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -84,6 +87,83 @@ TEST(CurvatureEstimate, ADirectionAlongTheNormalIsReplaced)
 	for (Index i = 0; i < field.size(); ++i) {
 		EXPECT_NEAR(field.d1.col(i).norm(), 1.0, 1e-12);
 		EXPECT_NEAR(field.d1.col(i).dot(torus.field.d1.col(i)), 0.0, 1e-9);
+	}
+}
+
+CurvatureOptions paper()
+{
+	CurvatureOptions options;
+	options.scaleMode = ScaleMode::Paper;
+	return options;
+}
+
+// Every option of the published estimate.
+const std::vector<std::function<void(RobustCurvatureOptions&)>> changes = {
+	[](auto& o) { o.regionScale += 1.0; },
+	[](auto& o) { o.maxIterations += 1; },
+	[](auto& o) { o.tolerance *= 2.0; },
+	[](auto& o) { o.sigmaFactor += 0.1; },
+	[](auto& o) { o.cut += 0.1; },
+	[](auto& o) { o.featureGate = !o.featureGate; },
+	[](auto& o) { o.robust = !o.robust; },
+	[](auto& o) { o.maxPoints += 1; },
+	[](auto& o) { o.maxPairs += 1; },
+};
+
+TEST(CurvatureOptions, DifferInTheirMode)
+{
+	EXPECT_TRUE(paper() == paper());
+	EXPECT_TRUE(CurvatureOptions() == CurvatureOptions());
+	EXPECT_FALSE(paper() == CurvatureOptions());
+}
+
+TEST(CurvatureOptions, DifferInEveryOptionOfTheirMode)
+{
+	for (std::size_t k = 0; k < changes.size(); ++k) {
+		CurvatureOptions changed = paper();
+		changes[k](changed.paper);
+		EXPECT_FALSE(changed == paper()) << k;
+	}
+	CurvatureOptions changed;
+	changed.adaptive.minProbes += 1;
+	EXPECT_FALSE(changed == CurvatureOptions());
+	changed = {};
+	changed.adaptive.maxProbes += 1;
+	EXPECT_FALSE(changed == CurvatureOptions());
+}
+
+TEST(CurvatureOptions, OptionsOfTheOtherModeDoNotCount)
+{
+	for (const auto& change : changes) {
+		CurvatureOptions changed;
+		change(changed.paper);
+		EXPECT_TRUE(changed == CurvatureOptions());
+	}
+	CurvatureOptions changed = paper();
+	changed.adaptive.minProbes += 1;
+	EXPECT_TRUE(changed == paper());
+}
+
+TEST(CurvatureEstimate, GivenDirectionsAreTakenWhereTheyAreUsable)
+{
+	const double     nan = std::numeric_limits<double>::quiet_NaN();
+	Eigen::Matrix3Xd normals(3, 3), given(3, 3);
+	normals.colwise() = Vector3d(0, 0, 1);
+	given.col(0)      = Vector3d(0, 5, 2); // to be made tangent and unit
+	given.col(1)      = Vector3d(0, nan, 0);
+	given.col(2)      = Vector3d(0, 1e-9, 0);
+	CurvatureField field;
+	field.k1.setZero(3);
+	field.d1.resize(3, 3);
+	field.d2.resize(3, 3);
+	field.d1.colwise() = Vector3d(1, 0, 0);
+	field.d2.colwise() = Vector3d(0, 1, 0);
+	adoptDirections(given, normals, field);
+	EXPECT_EQ(Vector3d(field.d1.col(0)), Vector3d(0, 1, 0));
+	EXPECT_EQ(Vector3d(field.d2.col(0)), Vector3d(-1, 0, 0));
+	for (int i = 1; i < 3; ++i) {
+		EXPECT_EQ(Vector3d(field.d1.col(i)), Vector3d(1, 0, 0));
+		EXPECT_EQ(Vector3d(field.d2.col(i)), Vector3d(0, 1, 0));
 	}
 }
 

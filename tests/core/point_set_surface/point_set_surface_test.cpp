@@ -1,4 +1,4 @@
-// Local quadrics as surfaces, and places scattered around points.
+// Local quadrics as surfaces, places scattered around points, and how far projection moved points.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
@@ -78,6 +78,33 @@ TEST(ScatterAround, SpreadsOverTheAreaOfOnePoint)
 			}
 		}
 	}
+}
+
+TEST(ProjectionMoves, CountWhatWasProjectedInTheUnitsWanted)
+{
+	Eigen::Matrix3Xd from(3, 3);
+	from << 0, 1, 5, 0, 0, 5, 0, 0, 5;
+	ProjectedPoints points;
+	points.positions = from;
+	points.positions.col(0) += Eigen::Vector3d(0, 0, 3);
+	points.positions.col(1) += Eigen::Vector3d(4, 0, 0);
+	points.positions.col(2) += Eigen::Vector3d(9, 9, 9);
+	points.projected            = {1, 1, 0};
+	const ProjectionMoves moves = movesOf(points, from, 2.0);
+	EXPECT_EQ(moves.projected, 2);
+	EXPECT_EQ(moves.rms, 2.0 * std::sqrt(12.5));
+	EXPECT_EQ(moves.largest, 8.0);
+}
+
+TEST(ProjectionMoves, OfNothingAreZero)
+{
+	ProjectedPoints points;
+	points.positions = Eigen::Matrix3Xd::Ones(3, 1);
+	points.projected = {0};
+	const auto moves = movesOf(points, Eigen::Matrix3Xd::Zero(3, 1));
+	EXPECT_EQ(moves.projected, 0);
+	EXPECT_EQ(moves.rms, 0.0);
+	EXPECT_EQ(moves.largest, 0.0);
 }
 
 } // namespace

@@ -48,6 +48,17 @@ RayTracingOptions small(int width = 60, int height = 40)
 	return options;
 }
 
+TEST(Camera, IsUprightUnlessUpRunsAlongTheView)
+{
+	Camera camera;
+	EXPECT_TRUE(camera.isUpright());
+	camera.up = camera.position - camera.target;
+	EXPECT_FALSE(camera.isUpright());
+	camera        = {};
+	camera.target = camera.position; // no view at all
+	EXPECT_FALSE(camera.isUpright());
+}
+
 TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
 {
 	const Scene                     scene("sphere", 4000);

@@ -26,9 +26,7 @@ PARTS_OF_A_STAGE = {
     "fitting/patch_blend": "cleaning/robust_denoising",
     "fitting/point_deviation": "cleaning/robust_denoising",
     "fitting/point_subsets": "curvature/adaptive_curvature",
-    "fitting/sample_kernels_simd": "fitting/sample_kernels",
     "fitting/surface_anchors": "curvature/adaptive_curvature",
-    "point_set_surface/gaussian_sums_simd": "point_set_surface/gaussian_sums",
     "position_field/surface_graph": "position_field/surface_arrangement",
 }
 # Units that only a whole filter shows at work, with the test of the filter in this folder.
@@ -39,9 +37,7 @@ NOTHING_OF_THEIR_OWN = {
     "base/simd_dispatch",
     "cleaning/outlier_result",
     "fitting/monomials",
-    "fitting/sample_kernels_avx2",
     "lines/line_crossing",
-    "point_set_surface/gaussian_sums_avx2",
 }
 
 
@@ -61,7 +57,8 @@ def sources(folder):
 
 
 def unit_of(file):
-    return f"{file.parent.name}/{file.stem}"
+    """Room and name. The loops of a unit for one set of instructions are part of it."""
+    return f"{file.parent.name}/{re.sub('_(simd|avx2)$', '', file.stem)}"
 
 
 UNITS = {unit_of(file) for file in sources(CORE)}

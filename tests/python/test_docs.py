@@ -73,7 +73,8 @@ def test_the_map_for_contributors_shows_rooms_and_units_as_they_are():
     for name, _, units in rows:
         headers = {file.stem for file in (CHECKOUT / "filter_curvature_lines/core" / name).glob("*.h")}
         assert headers
-        assert set(re.findall(r"`(\w+)`", units)) == headers, name
+        # The loops of a unit for one set of instructions are part of it.
+        assert set(re.findall(r"`(\w+)`", units)) == {re.sub("_simd$", "", stem) for stem in headers}, name
 
 
 def test_the_method_names_units_that_exist():

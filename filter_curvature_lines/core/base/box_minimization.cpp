@@ -18,8 +18,11 @@ namespace curvature_lines {
 
 namespace {
 
+// A step that lowers the energy by less than this share of it ends the search: what it gains is rounding.
 constexpr double relativeGain = 1e-9;
-constexpr double firstMove    = 0.05; // of the box, by the largest coordinate of a first step
+// Share of the box by which the largest coordinate of the first step moves. A gradient alone says nothing about
+// the length of a step.
+constexpr double firstMove = 0.05;
 
 struct StepFailed : std::runtime_error {
 	using std::runtime_error::runtime_error;

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <optional>
 
+#include "blended_surface.h"
 #include "gate_normals.h"
 #include "local_spacing.h"
-#include "patch_blend.h"
 #include "point_deviation.h"
 #include "quantile.h"
 
@@ -95,7 +95,7 @@ Progress rung(const Progress& progress, int k)
 
 struct Candidate {
 	std::vector<double> radius; // per point, of its patches: a length
-	PatchBlend          blend;
+	BlendedSurface      blend;
 	std::vector<double> loss; // per point: squared leave-one-out residual in noise units, limited
 };
 
@@ -112,7 +112,7 @@ private:
 	double freeRadius(const Progress& progress) const;
 	double arcRadius(const BlendGuide& guide, double start, const Progress& progress) const;
 	Candidate smoothCandidate(const Progress& progress) const;
-	PatchBlend edgePilot(
+	BlendedSurface edgePilot(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	BlendOptions oneFaceOptions(std::vector<double> radius) const;
 	Candidate sharpCandidate(
@@ -121,7 +121,7 @@ private:
 	std::vector<double> sharpShare(
 		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
 	void sharpen(Candidate& smooth, const Progress& progress) const;
-	void undoFarMoves(PatchBlend& blend) const;
+	void undoFarMoves(BlendedSurface& blend) const;
 	bool fits(const std::vector<double>& radii) const;
 	void findUnits();
 	std::vector<double> radii(double factor) const; // of units
@@ -266,9 +266,9 @@ void RobustDenoiser::findPointsOffEdges(const Progress& progress)
 				pilotNoise * m_input.pointDeviation[i],
 				minPilotRadius * m_input.spacing[i],
 				maxFlagRadius * m_input.spacing[i]));
-	const PatchBlend   blend = blendPatches(m_input, *m_start, options, m_test, progress);
-	std::vector<Index> offEdges;
-	Index              clear = 0;
+	const BlendedSurface blend = blendPatches(m_input, *m_start, options, m_test, progress);
+	std::vector<Index>   offEdges;
+	Index                clear = 0;
 	for (const Index i : m_test) {
 		if (blend.purity[i] > minPurity)
 			offEdges.push_back(i);
@@ -359,14 +359,14 @@ std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
 
 // Positions and normals as a guide for patches of one face: at the targets from narrow pure patches, elsewhere from the
 // smooth surface.
-PatchBlend RobustDenoiser::edgePilot(
+BlendedSurface RobustDenoiser::edgePilot(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
 	BlendOptions options;
 	options.radius     = pilotRadii(smooth);
 	options.purity     = strictPurity;
 	options.acceptance = pilotAcceptance;
-	const PatchBlend free =
+	const BlendedSurface free =
 		blendPatches(m_input, *m_start, options, targets, progress.sub(0.0, 0.5, stage));
 	Eigen::Matrix3Xd positions = smooth.blend.positions, normals = smooth.blend.normals;
 	for (const Index i : targets) {
@@ -392,7 +392,7 @@ BlendOptions RobustDenoiser::oneFaceOptions(std::vector<double> radius) const
 Candidate RobustDenoiser::sharpCandidate(
 	const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const
 {
-	PatchBlend     pilot     = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
+	BlendedSurface pilot     = edgePilot(smooth, targets, progress.sub(0.0, 0.2, stage));
 	BlendOptions   options   = oneFaceOptions(pilotRadii(smooth));
 	const Progress ladder    = progress.sub(0.2, 0.9, stage);
 	const double   last      = m_options.radius > 0.0 ? m_options.radius : maxOneFaceRadius;
@@ -468,7 +468,7 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 }
 
 // Such a point is an outlier, or was assigned to the wrong face.
-void RobustDenoiser::undoFarMoves(PatchBlend& blend) const
+void RobustDenoiser::undoFarMoves(BlendedSurface& blend) const
 {
 	for (Index i = 0; i < size(); ++i)
 		if ((blend.positions.col(i) - m_input.cloud.positions.col(i)).norm() >

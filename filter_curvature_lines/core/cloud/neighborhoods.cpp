@@ -158,6 +158,8 @@ std::vector<Index> indicesOf(const std::vector<DistanceIndex>& found)
 
 constexpr int sliceCount = 6; // see sliceOf()
 
+// Share of the neighbours on the side of a point's normal below which the normal is taken to be wrong. Of random
+// normals half are; a point at the edge of a thin sheet still has about half of its neighbours on its own.
 constexpr double minAgreement = 0.25;
 
 // Points on the other sheet of a thin part have opposing normals. But a point that nearly all others

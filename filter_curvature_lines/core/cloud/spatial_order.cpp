@@ -9,7 +9,8 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr int bits = 10; // per coordinate
+// Per coordinate: three of them fit into 32 bits, and 1024 cells along a side are enough for the cache.
+constexpr int bits = 10;
 
 std::uint32_t mortonCode(const Eigen::Vector3d& cell)
 {

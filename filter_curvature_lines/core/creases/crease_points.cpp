@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include "quantile.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
@@ -170,7 +171,7 @@ private:
 		const double median = medianInPlace(m_sorted);
 		for (double& height : m_sorted)
 			height = std::abs(height - median);
-		const double limit = outlierScales * 1.4826 * medianInPlace(m_sorted) + 1e-12;
+		const double limit = outlierScales * deviationOverMedian * medianInPlace(m_sorted) + 1e-12;
 		double       sum = 0.0, total = 0.0;
 		for (const auto& [height, weight] : m_heights)
 			if (std::abs(height - median) <= limit) {
@@ -275,7 +276,7 @@ CreasePoints findCreasePoints(
 	heights.erase(std::remove(heights.begin(), heights.end(), -1.0), heights.end());
 	if (heights.empty())
 		return result;
-	result.faceDeviation = 1.4826 * medianInPlace(heights);
+	result.faceDeviation = deviationOverMedian * medianInPlace(heights);
 
 	std::vector<std::vector<CreasePoint>> rows(n);
 	parallelForPoints(search, progress, [&](Index i) {

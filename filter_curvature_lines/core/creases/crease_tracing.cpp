@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "quantile.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
@@ -139,7 +140,7 @@ std::optional<CreasePoint> CreaseTracing::curveAt(const CreasePoint& guess) cons
 	const double        scale  = robustScale * medianInPlace(sorted) + 1e-12;
 	for (std::size_t k = 0; k < along.size(); ++k) {
 		const double t = distances[k] / scale;
-		weights[k] /= (1.0 + t * t) * (1.0 + t * t);
+		weights[k] /= gemanMcClureDivisor(t * t);
 	}
 	fit             = fitAlong(along, across, weights, radius);
 	result.position = guess.position + frame.toSpace(fit.value);

@@ -368,7 +368,7 @@ void setWeights(
 			if (t > published.cut)
 				continue;
 			rows[i][kept]      = rows[i][k];
-			residuals[i][kept] = 0.5 * gemanMcClureWeight(t);
+			residuals[i][kept] = relativeGemanMcClureWeight(t * t);
 			++kept;
 		}
 		rows[i].resize(kept);

@@ -81,8 +81,7 @@ struct GemanMcClure {
 	double operator()(double squaredResidual) const
 	{
 		const double t2     = squaredResidual * perSquaredSigma;
-		const double one    = 1.0 + t2;
-		const double weight = 2.0 / (one * one);
+		const double weight = 2.0 / gemanMcClureDivisor(t2);
 		return t2 < limit ? weight : 0.0;
 	}
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "point_cloud.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
@@ -36,7 +37,7 @@ struct VariationSamples {
 struct IrlsOptions {
 	Index  maxIterations = 30;
 	double tolerance     = 1e-4;
-	double sigmaFactor   = 1.4826;
+	double sigmaFactor   = deviationOverMedian;
 	double cut           = 2.0;
 	bool   robust        = true;
 	// of the residuals, the median; less tolerates more than half outliers

@@ -6,16 +6,17 @@
 #include "curvature_field.h"
 #include "members.h"
 #include "neighborhoods.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
 struct RobustCurvatureOptions {
 	// operating region: ball of this many local spacings (A09 section 3)
 	double regionScale   = 3.0;
-	Index  maxIterations = 30;     // IRLS iterations per point
-	double tolerance     = 1e-4;   // stop when the tensor changes by less, relatively
-	double sigmaFactor   = 1.4826; // sigma = factor * median residual (A09 eq. after 1)
-	double cut           = 2.0;    // residuals above cut * sigma get weight 0
+	Index  maxIterations = 30;                // IRLS iterations per point
+	double tolerance     = 1e-4;              // stop when the tensor changes by less, relatively
+	double sigmaFactor = deviationOverMedian; // sigma = factor * median residual (A09 eq. after 1)
+	double cut         = 2.0;                 // residuals above cut * sigma get weight 0
 	// Keep only points that agree with p_i itself before forming pairs. Finds out as well when n_i is the
 	// one that is wrong, and fits at the neighbours' normal instead; regions hold at least 20 points where
 	// twice the radius does. false: the published algorithm.

@@ -46,7 +46,7 @@ PolynomialFit<Degree, Values> fitPolynomial(LocalSamples<Values>& samples)
 	if (samples.size() < count || !(fit.sumOfWeights > 0.0))
 		return fit;
 	Eigen::Matrix<double, count, count> regular = fit.gram;
-	regular.diagonal() *= 1.0 + 1e-10; // a sheet seen edge-on still has a solution
+	regular.diagonal() *= 1.0 + 1e-10; // samples along one line still have a solution
 	const Eigen::LDLT<Eigen::Matrix<double, count, count>> ldlt(regular);
 	fit.coefficients    = ldlt.solve(rhs);
 	fit.squaredResidual = std::max(0.0, moments.squares - fit.coefficients.cwiseProduct(rhs).sum());

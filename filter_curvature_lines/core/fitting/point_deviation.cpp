@@ -32,7 +32,7 @@ constexpr Quantile quartile = {0.25, 0.6744898}, tenth = {0.1, 1.2815516};
 // Noise varies over a cloud. The lower quantile of many patches belongs to those off the edges; chi-squared
 // quantile by Wilson and Hilferty.
 std::vector<double>
-pointDeviation(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order)
+pointDeviation(const BlendedSurface& blend, const PointCloud& cloud, const SpatialOrder& order)
 {
 	if (blend.center.empty())
 		return std::vector<double>(cloud.size(), minDeviation);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "patch_blend.h"
+#include "blended_surface.h"
 #include "point_cloud.h"
 #include "spatial_order.h"
 
@@ -12,6 +12,6 @@ namespace curvature_lines {
 // (SurfacePatch::scale squared), over what that quantile is of a chi-squared variable. Of the smallest patches that
 // hold enough points, so it contains less detail of the surface than OutlierResult::heightDeviation.
 std::vector<double>
-pointDeviation(const PatchBlend& blend, const PointCloud& cloud, const SpatialOrder& order);
+pointDeviation(const BlendedSurface& blend, const PointCloud& cloud, const SpatialOrder& order);
 
 } // namespace curvature_lines

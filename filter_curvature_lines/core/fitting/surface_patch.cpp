@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "bracketed_selection.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
@@ -18,18 +19,24 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int    minRobustPoints = 12; // twice the unknowns: a majority must determine a quadric
-constexpr int    triples         = 24;
-constexpr int    planeSample     = 48;   // points that judge a plane
-constexpr double planeCutoff     = 2.5;  // robust deviations
-constexpr double minority        = 0.35; // of the points may be all that lie on one surface
-// deviation of a normal distribution over this quantile of |r|
+// docs/method.md, "Local polynomials", robust patches; values without another reason by experiment (cleaning.py).
+constexpr int minRobustPoints = 12; // twice the unknowns: a majority must determine a quadric
+// Planes that are tried, each through three random points. With half of the points on the surface 24 fail to hold
+// one of three such points in one case of 25 ((1 - 1/8)^24); with two thirds in one of 4600.
+constexpr int triples     = 24;
+constexpr int planeSample = 48; // points that judge a plane
+// Robust deviations of the points near the plane within which a point belongs to it.
+constexpr double planeCutoff = 2.5;
+// Share of the points that may be all that lie on one surface, and the deviation of a normal distribution over this
+// quantile of |r|: 1 / Phi^-1((1 + 0.35) / 2).
+constexpr double minority           = 0.35;
 constexpr double minorityDeviations = 2.2036;
-constexpr double medianDeviations   = 1.4826; // and over the median
-constexpr double downweighting      = 1.5;
-constexpr double cutoff             = 4.5;
-constexpr int    firstIterations    = 5;
-constexpr int    tiltedIterations   = 6;
+// Deviations in which the Geman-McClure weight takes a residual, and beyond which it is 0.
+constexpr double downweighting = 1.5;
+constexpr double cutoff        = 4.5;
+// Steps in the frame of the plane, and in that of the quadric: weights change by little after as many.
+constexpr int firstIterations  = 5;
+constexpr int tiltedIterations = 6;
 
 // phi^T A^-1 phi collected by powers: a sixth of the products of the quadratic form.
 template<class Matrix>
@@ -153,7 +160,7 @@ double robustScale(RobustPatchScratch& scratch, int n, double before)
 {
 	const bool   first    = before <= 0.0;
 	const double limit    = first ? std::numeric_limits<double>::infinity() : cutoff * before;
-	const double factor   = first ? minorityDeviations : medianDeviations;
+	const double factor   = first ? minorityDeviations : deviationOverMedian;
 	const auto   absolute = [&](int k) {
         const double r = std::abs(scratch.residuals[k]);
         return r < limit ? r : -1.0;
@@ -179,7 +186,7 @@ bool reweightedStep(SurfacePatch& patch, double minScale, RobustPatchScratch& sc
 	for (int k = 0; k < n; ++k) {
 		const double e    = scratch.residuals[k] * unit;
 		const double e2   = e * e;
-		samples.weight[k] = e2 < limit ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
+		samples.weight[k] = e2 < limit ? relativeGemanMcClureWeight(e2) : 0.0;
 	}
 	return true;
 }

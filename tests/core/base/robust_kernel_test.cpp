@@ -1,5 +1,7 @@
 // The robust cost and its weight.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "robust_kernel.h"
@@ -15,6 +17,23 @@ TEST(RobustKernel, TheWeightIsTheDerivativeOfTheCostOverTheResidual)
 		EXPECT_NEAR(gemanMcClureWeight(t), derivative / t, 1e-6 * (1.0 + derivative / t));
 	}
 	EXPECT_EQ(gemanMcClureWeight(0.0), 2.0);
+}
+
+TEST(RobustKernel, TheRelativeWeightIsTheWeightOverThatOfZero)
+{
+	for (double t = 0.0; t < 20.0; t += 0.37) {
+		EXPECT_EQ(
+			relativeGemanMcClureWeight(t * t), gemanMcClureWeight(t) / gemanMcClureWeight(0.0));
+		EXPECT_NEAR(gemanMcClureDivisor(t * t) * relativeGemanMcClureWeight(t * t), 1.0, 1e-15);
+	}
+	EXPECT_EQ(relativeGemanMcClureWeight(1.0), 0.25);
+}
+
+// Half of a normal distribution lies within its median of |r|.
+TEST(RobustKernel, TheDeviationIsThatOfANormalDistribution)
+{
+	const double within = std::erf(1.0 / deviationOverMedian / std::sqrt(2.0));
+	EXPECT_NEAR(within, 0.5, 1e-5);
 }
 
 TEST(RobustKernel, IsEvenAndBoundedAndGrows)

@@ -3,12 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "blend_patch.h"
+#include "covering_patch.h"
 
 namespace curvature_lines {
 
 // Per point of the input, and at points that were not asked for the guide itself.
-struct PatchBlend {
+struct BlendedSurface {
 	Eigen::Matrix3Xd    positions, normals; // 3 x N
 	std::vector<double> residual; // leave-one-out, a length; infinite where no patch reaches
 	std::vector<double> purity;   // 0..1: share of the patches' weight that their residuals leave
@@ -18,7 +18,7 @@ struct PatchBlend {
 };
 
 // At the points of `targets` only, with the patches they need; best in ascending order.
-PatchBlend blendPatches(
+BlendedSurface blendPatches(
 	const BlendInput&         input,
 	const BlendGuide&         guide,
 	const BlendOptions&       options,

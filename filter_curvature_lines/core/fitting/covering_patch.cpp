@@ -1,12 +1,14 @@
 // Weighted fits to the points of a ball, one function per kind of support.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "blend_patch.h"
+#include "covering_patch.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
@@ -201,7 +203,7 @@ double ballRadius(const BlendInput& input, const BlendOptions& options, double r
 
 double normalWeight(double e2)
 {
-	return e2 < maxNormalWidths * maxNormalWidths ? 1.0 / ((1.0 + e2) * (1.0 + e2)) : 0.0;
+	return e2 < maxNormalWidths * maxNormalWidths ? relativeGemanMcClureWeight(e2) : 0.0;
 }
 
 ArcCoordinates arcCoordinates(
@@ -218,10 +220,10 @@ ArcCoordinates arcCoordinates(
 	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
 }
 
-BlendPatch
-patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i)
+CoveringPatch coveringPatchAt(
+	const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i)
 {
-	BlendPatch    patch;
+	CoveringPatch patch;
 	Scratch&      scratch = Scratch::ofThisThread();
 	const double  radius  = options.radius[i];
 	const double  reach   = ballRadius(input, options, radius, i);

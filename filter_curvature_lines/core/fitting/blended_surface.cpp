@@ -1,6 +1,6 @@
-// What the patches over a point say about it, and their blend.
+// The predictions of the patches that cover a point, and their weighted mean.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "patch_blend.h"
+#include "blended_surface.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "face_projection.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 
@@ -68,11 +69,11 @@ void weigh(Prediction& p, double x, double y, double leverage, double gate)
 }
 
 Prediction predict(
-	const BlendPatch&   patch,
-	const BlendOptions& options,
-	const Vector3d&     position,
-	const Vector3d&     place,
-	const Vector3d&     normal)
+	const CoveringPatch& patch,
+	const BlendOptions&  options,
+	const Vector3d&      position,
+	const Vector3d&      place,
+	const Vector3d&      normal)
 {
 	const SurfacePatch&   surface = patch.surface;
 	const Eigen::Vector2d at      = surface.frame.toPlane(place - surface.origin) / surface.radius;
@@ -92,11 +93,11 @@ Prediction predict(
 
 // The point stays at its arc length and moves along the guide's normal to the predicted height.
 Prediction predictByArcLength(
-	const BlendPatch& patch,
-	const Vector3d&   position,
-	const Vector3d&   place,
-	const Vector3d&   normal,
-	double            noise)
+	const CoveringPatch& patch,
+	const Vector3d&      position,
+	const Vector3d&      place,
+	const Vector3d&      normal,
+	double               noise)
 {
 	const SurfacePatch&  surface = patch.surface;
 	const ArcCoordinates at =
@@ -127,7 +128,7 @@ double acceptance(const BlendInput& input, const BlendOptions& options, double r
 	if (std::abs(residual) > farthestMove(input, i))
 		return 0.0;
 	const double e = residual / (options.acceptance * input.pointDeviation[i]);
-	return 1.0 / ((1.0 + e * e) * (1.0 + e * e));
+	return relativeGemanMcClureWeight(e * e);
 }
 
 // Votes with similar normals are one face; the heaviest first.
@@ -171,19 +172,19 @@ public:
 		const std::vector<Index>& targets,
 		const Progress&           progress);
 
-	void describeResiduals(PatchBlend& blend) const;
-	void blendAt(Index i, PatchBlend& blend) const;
+	void describeResiduals(BlendedSurface& blend) const;
+	void blendAt(Index i, BlendedSurface& blend) const;
 
 private:
 	void findCovering(Index i, std::vector<Index>& found) const;
 
-	const BlendInput&       m_input;
-	const BlendGuide&       m_guide;
-	const BlendOptions&     m_options;
-	std::vector<Index>      m_points; // of the centres
-	Eigen::Matrix3Xd        m_centers;
-	NeighborSearch          m_search; // of the centres
-	std::vector<BlendPatch> m_patches;
+	const BlendInput&          m_input;
+	const BlendGuide&          m_guide;
+	const BlendOptions&        m_options;
+	std::vector<Index>         m_points; // of the centres
+	Eigen::Matrix3Xd           m_centers;
+	NeighborSearch             m_search; // of the centres
+	std::vector<CoveringPatch> m_patches;
 };
 
 // Wide patches need fewer centres to overlap as much: the first points of the shuffled order, as many
@@ -222,7 +223,7 @@ CoveringPatches::CoveringPatches(
 		});
 	parallelFor(static_cast<Index>(m_patches.size()), progress, [&](Index c) {
 		if (all || used[c])
-			m_patches[c] = patchAt(input, guide, options, m_points[c]);
+			m_patches[c] = coveringPatchAt(input, guide, options, m_points[c]);
 	});
 }
 
@@ -232,10 +233,10 @@ void CoveringPatches::findCovering(Index i, std::vector<Index>& found) const
 	m_search.within(m_guide.positions.col(i), ballRadius(m_input, m_options, radius, i), found);
 }
 
-void CoveringPatches::describeResiduals(PatchBlend& blend) const
+void CoveringPatches::describeResiduals(BlendedSurface& blend) const
 {
 	for (std::size_t c = 0; c < m_patches.size(); ++c) {
-		const BlendPatch& patch = m_patches[c];
+		const CoveringPatch& patch = m_patches[c];
 		if (patch.surface.valid) {
 			blend.center.push_back(m_points[c]);
 			blend.variance.push_back(patch.surface.scale * patch.surface.scale);
@@ -244,7 +245,7 @@ void CoveringPatches::describeResiduals(PatchBlend& blend) const
 	}
 }
 
-void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
+void CoveringPatches::blendAt(Index i, BlendedSurface& blend) const
 {
 	const Vector3d      position = m_input.cloud.positions.col(i);
 	const Vector3d      place = m_guide.positions.col(i), normal = m_guide.normals.col(i);
@@ -257,7 +258,7 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 	std::vector<FaceVote>& across = Scratch::ofThisThread().across;
 	across.clear();
 	for (const Index j : found) {
-		const BlendPatch& patch = m_patches[j];
+		const CoveringPatch& patch = m_patches[j];
 		if (!patch.surface.valid)
 			continue;
 		const Prediction p = m_options.support == Support::ArcLength
@@ -301,7 +302,7 @@ void CoveringPatches::blendAt(Index i, PatchBlend& blend) const
 
 } // namespace
 
-PatchBlend blendPatches(
+BlendedSurface blendPatches(
 	const BlendInput&         input,
 	const BlendGuide&         guide,
 	const BlendOptions&       options,
@@ -312,7 +313,7 @@ PatchBlend blendPatches(
 	const CoveringPatches patches(
 		input, guide, options, targets, progress.sub(0.0, 0.7, "Fitting patches"));
 
-	PatchBlend blend;
+	BlendedSurface blend;
 	blend.positions = guide.positions;
 	blend.normals   = guide.normals;
 	blend.residual.assign(n, std::numeric_limits<double>::infinity());

@@ -60,13 +60,13 @@ struct BlendOptions {
 };
 
 // The patch and how far its residuals fit the noise, 0..1.
-struct BlendPatch {
+struct CoveringPatch {
 	SurfacePatch surface;
 	double       purity = 1.0;
 };
 
-BlendPatch
-patchAt(const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i);
+CoveringPatch coveringPatchAt(
+	const BlendInput& input, const BlendGuide& guide, const BlendOptions& options, Index i);
 
 // Coordinates of a point in a patch by arc length: x and y from the guide, in radii; z from the input, a length.
 struct ArcCoordinates {

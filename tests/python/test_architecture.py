@@ -18,15 +18,8 @@ LONGEST_FUNCTION = 90  # lines between the braces
 PARTS_OF_A_STAGE = {
     "cleaning/outlier_groups": "cleaning/outlier_rejection",
     "cleaning/robust_outliers": "cleaning/outlier_rejection",
-    "curvature/adaptive_scale": "curvature/adaptive_curvature",
-    "fitting/anchor_fits": "curvature/adaptive_curvature",
-    "fitting/blended_surface": "cleaning/robust_denoising",
-    "fitting/covering_patch": "cleaning/robust_denoising",
     "fitting/face_projection": "cleaning/robust_denoising",
-    "fitting/local_surface": "curvature/adaptive_curvature",
     "fitting/point_deviation": "cleaning/robust_denoising",
-    "fitting/point_subsets": "curvature/adaptive_curvature",
-    "fitting/surface_anchors": "curvature/adaptive_curvature",
     "position_field/surface_graph": "position_field/surface_arrangement",
 }
 # Units that only a whole filter shows at work, with the test of the filter in this folder.

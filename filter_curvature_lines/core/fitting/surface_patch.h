@@ -8,6 +8,16 @@
 
 namespace curvature_lines {
 
+// Fitted by fitPolynomial() and with the weights of robust_kernel.h, like the heights of LocalSurfaceFitter. The rest
+// differs for a reason, so the two do not share it:
+// - Samples are weighted by their distance along the tangent plane, there by their distance in space: the prediction
+//   variance and the noise that a patch is asked for would be too small with weights that depend on the heights.
+// - Residuals are distances from the surface, there heights over the plane: a voter's plane may be far from tangent.
+// - A robust patch starts from a plane through a minority of the points and re-weights until it settles, because most
+//   points may be outliers. A local surface knows its side by the gate normals and re-weights once per step, only when
+//   a residual is suspicious.
+// - The points of a local surface come with normals, those of a patch from a guide or without any.
+//
 // z = phi(x, y) . a with phi = (1, x, y, x^2, x y, y^2); x and y in radii, z a length.
 struct SurfacePatch {
 	using Fit = PolynomialFit<2, 1>;

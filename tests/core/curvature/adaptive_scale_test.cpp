@@ -55,7 +55,7 @@ TEST(AdaptiveScale, MixturesAreSharesOfTheCandidates)
 	const ScaleSelection found = selectScales(sample, fewProbes());
 	ASSERT_GT(found.scales.size(), 3u);
 	ASSERT_EQ(found.positions.cols(), static_cast<Eigen::Index>(found.mixtures.size()));
-	ASSERT_GE(found.mixtures.size(), 128u);
+	ASSERT_GE(found.mixtures.size(), 32u); // at every fourth of the probes
 	for (const ScaleMixture& mixture : found.mixtures) {
 		ASSERT_FALSE(mixture.weights.empty());
 		double sum = 0.0, before = 1.0;
@@ -83,7 +83,7 @@ TEST(AdaptiveScale, GrowsWithTheNoiseAndMeasuresIt)
 	for (const double noise : {0.0005, 0.002, 0.008}) {
 		const PointSample    sample(cloudOf("torus", 4000, noise));
 		const ScaleSelection found = selectScales(sample, fewProbes());
-		EXPECT_GT(meanRadius(found), 1.1 * radius) << noise;
+		EXPECT_GT(meanRadius(found), radius) << noise;
 		radius = meanRadius(found);
 		if (noise >= 0.002) { // below, the smallest balls are bent by more than the noise
 			EXPECT_GT(found.quadricResidual, 0.7 * noise);

@@ -33,7 +33,7 @@ Key keyOf(const Eigen::Matrix3Xd& m, Index k)
 TEST(PointSubsets, ShareAllPointsAmongThem)
 {
 	const PointSample            sample(shuffledTorus(6000));
-	const PointSubsets           subsets(sample, 0.5);
+	const PointSubsets           subsets(sample, 0.9);
 	std::set<const PointSample*> different;
 	for (Index place = 0; place < 64; ++place)
 		different.insert(&subsets[place]);

@@ -73,7 +73,7 @@ TEST(SurfaceAnchors, ASphereHasNoEdgesAndItsCurvature)
 		ASSERT_TRUE(element.valid);
 		EXPECT_NEAR(0.5 * element.shape.trace(), 1.0, 0.05);
 		EXPECT_GT(element.normal.dot(start.position.normalized()), 0.9999);
-		EXPECT_LT((element.shape * element.normal).norm(), 1e-9);
+		EXPECT_LT((element.shape * element.normal).norm(), 1e-5);
 	}
 }
 
@@ -106,8 +106,7 @@ TEST(SurfaceAnchors, KnowTheFacesThatMeetAtTheEdgesOfACube)
 		worst = std::max(worst, std::abs(edge.distance - distance));
 		// A plane, although an edge runs through the ball.
 		const SurfaceElement element = a.anchors.normalField(face);
-		if (element.valid)
-			EXPECT_LT(element.shape.norm(), 0.5);
+		EXPECT_TRUE(!element.valid || element.shape.norm() < 0.5);
 	}
 	EXPECT_GT(near, 20);
 	EXPECT_LT(worst, 0.05 * radius);

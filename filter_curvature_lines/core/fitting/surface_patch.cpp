@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 
 // docs/method.md, "Local polynomials", robust patches; values without another reason by experiment (cleaning.py).
 constexpr int minRobustPoints = 12; // twice the unknowns: a majority must determine a quadric
-// Planes that are tried, each through three random points. With half of the points on the surface 24 fail to hold
-// one of three such points in one case of 25 ((1 - 1/8)^24); with two thirds in one of 4600.
+// Planes that are tried, each through three random points. With half of the points on the surface none of 24 goes
+// through three of these in one case of 25 ((1 - 1/8)^24); with two thirds in one of 4600.
 constexpr int triples     = 24;
 constexpr int planeSample = 48; // points that judge a plane
 // Robust deviations of the points near the plane within which a point belongs to it.

@@ -58,18 +58,9 @@ RawCurvatures valuesOf(const LayerPoints& points, const CurvatureEstimate& estim
 
 CurvatureEstimate::CurvatureEstimate(
 	const LayerPoints& points, const EstimateOptions& options, const Progress& progress) :
-		prepared(prepareCloud(points.positions, points.normals)), search(prepared.cloud.positions),
-		minimum(minimumNeighborhoods(
-			prepared.cloud,
-			search,
-			options.neighborhood,
-			progress.sub(0.0, 0.1, "Finding neighborhoods"))),
-		field(estimateCurvature(
-			prepared.cloud,
-			search,
-			minimum,
-			options.curvature,
-			progress.sub(0.1, 1.0, "Estimating curvature")))
+		prepared(prepareCloud(points.positions, points.normals)),
+		index(prepared.cloud, options.neighborhood),
+		field(estimateCurvature(index, options.curvature, progress))
 {
 	if (options.curvature.scaleMode == ScaleMode::Adaptive)
 		prepared.cloud.normals = surfaceNormals(field);

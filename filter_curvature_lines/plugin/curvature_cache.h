@@ -29,21 +29,17 @@ inline bool operator==(const EstimateOptions& a, const EstimateOptions& b)
 }
 
 // A cloud in the unit frame with its curvature. The cloud's normals are those the directions are tangent
-// to: with ScaleMode::Adaptive, those of the fitted surface where it differs from the layer's. Not movable:
-// the search tree refers to the cloud.
+// to: with ScaleMode::Adaptive, those of the fitted surface where it differs from the layer's.
 struct CurvatureEstimate {
 	CurvatureEstimate(
 		const LayerPoints& points, const EstimateOptions& options, const Progress& progress);
-	CurvatureEstimate(const CurvatureEstimate&) = delete;
-
 	// The points get the estimate's corrected normals, as the layer's precision will hold them, and so
 	// does the cloud; the directions are made tangent to them.
 	void adoptNormals(LayerPoints& points);
 
-	PreparedCloud              prepared;
-	const NeighborSearch       search;
-	const MinimumNeighborhoods minimum;
-	CurvatureField             field;
+	PreparedCloud  prepared;
+	CloudIndex     index; // of the prepared points, with the layer's normals
+	CurvatureField field;
 };
 
 // What the layer carries, or what was computed because it carried nothing fresh.

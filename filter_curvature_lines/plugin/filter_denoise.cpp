@@ -1,7 +1,5 @@
 // Denoise Point Cloud by Robust Curvature: core/denoising on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <functional>
-
 #include "filter_table.h"
 #include "help_text.h"
 
@@ -72,35 +70,6 @@ void parameters(ParameterTable& table, DenoisingOptions& options)
 		advancedParameter);
 }
 
-// The curvature of the layer, when the method asks for it.
-class LayerCorrection {
-public:
-	LayerCorrection(const FilterContext& context, const LayerPoints& points) :
-			m_context(context), m_points(points)
-	{
-	}
-	CorrectedNormals operator()(const Progress& progress)
-	{
-		const Stopwatch watch;
-		m_curvature = m_context.cache.ofLayer(currentLayer(m_context.document), m_points, progress);
-		m_seconds   = watch.seconds();
-		const CurvatureEstimate& estimate = *m_curvature.estimate;
-		return {estimate.field.correctedNormals, estimate.search, estimate.minimum};
-	}
-	double seconds() const { return m_seconds; }
-	void report(FilterResults& results) const
-	{
-		results.flag("curvature_reused", m_curvature.reused);
-		results.seconds("curvature", m_seconds);
-	}
-
-private:
-	const FilterContext& m_context;
-	const LayerPoints&   m_points;
-	LayerCurvature       m_curvature;
-	double               m_seconds = 0.0;
-};
-
 FilterResults apply(const FilterContext& context, const DenoisingOptions& given)
 {
 	DenoisingOptions    options = given;
@@ -113,31 +82,42 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& given)
 		throw MLException(
 			"parameter 'noise' is more than half the cloud's diagonal (" +
 			QString::number(prepared.diagonal) + ").");
-	LayerCorrection       correction(context, points);
-	const Stopwatch       stage;
-	const DenoisingResult denoised =
-		denoise(prepared.cloud, std::ref(correction), options, context.progress);
-	const double seconds = stage.seconds() - correction.seconds();
+	const bool      published = options.method == DenoisingOptions::Method::Paper;
+	FilterResults   results;
+	DenoisingResult denoised;
+	Stopwatch       stage;
+	if (published) {
+		const LayerCurvature curvature = context.cache.ofLayer(
+			layer, points, context.progress.sub(0.0, 0.5, "Estimating curvature"));
+		results.flag("curvature_reused", curvature.reused);
+		results.seconds("curvature", stage.lap());
+		denoised = denoiseAsPublished(
+			curvature.estimate->index,
+			curvature.estimate->field.correctedNormals,
+			options.paper,
+			context.progress.sub(0.5, 1.0, "Denoising"));
+	}
+	else {
+		denoised = denoiseByProjection(prepared.cloud, options.robust, context.progress);
+	}
+	results.seconds("denoising", stage.lap());
 	writePositions(layer, points, prepared, denoised.positions);
 	writeNormals(layer, points, prepared, denoised.normals);
 
-	FilterResults results;
 	results.count("points", points.size());
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
 	results.count("duplicates", prepared.duplicates);
-	if (options.method == DenoisingOptions::Method::Robust) {
-		results.real("noise", denoised.pointDeviation * prepared.diagonal);
-		results.real("radius", denoised.radius);
-	}
-	else {
+	if (published) {
 		results.count("iterations", denoised.iterations);
 		results.real("energy_initial", denoised.initialEnergy);
 		results.real("energy_final", denoised.finalEnergy);
-		correction.report(results);
+	}
+	else {
+		results.real("noise", denoised.pointDeviation * prepared.diagonal);
+		results.real("radius", denoised.radius);
 	}
 	results.real("moved_rms", denoised.rmsMove * prepared.diagonal);
 	results.real("moved_max", denoised.maxMove * prepared.diagonal);
-	results.seconds("denoising", seconds);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -46,7 +46,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.seconds("curvature", stage.lap());
 
 	const UmbilicRegions umbilics = findUmbilics(
-		estimate->prepared.cloud, estimate->field, estimate->minimum, options.umbilics);
+		estimate->prepared.cloud, estimate->field, estimate->index.minimum(), options.umbilics);
 	const RawCurvatures values =
 		rawCurvatures(points.normals, estimate->prepared, estimate->field, umbilics.umbilic);
 
@@ -56,7 +56,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 				layer.cm.vert[points.vertex[i]].N()[c] = Scalarm(points.normals(c, i));
 	writeCurvatureOutput(layer, points, estimate->prepared.diagonal, values, options.output);
 
-	reportCurvature(results, estimate->prepared, estimate->minimum, values);
+	reportCurvature(results, estimate->prepared, estimate->index.minimum(), values);
 	results.count("iterations", estimate->field.iterations);
 	results.seconds("total", total.seconds());
 	return results;

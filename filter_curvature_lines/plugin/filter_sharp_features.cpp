@@ -62,13 +62,12 @@ FilterResults apply(const FilterContext& context, const Options& options)
 		prepared.cloud.normals   = std::move(denoised.normals);
 		results.seconds("denoising", stage.lap());
 	}
-	const NeighborSearch       search(prepared.cloud.positions);
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(
-		prepared.cloud, search, {}, context.progress.sub(0.8, 0.85, "Finding neighborhoods"));
+	const CloudIndex index(prepared.cloud);
+	index.minimum(context.progress.sub(0.8, 0.85, "Finding neighborhoods"));
 	CreaseOptions creaseOptions = options.creases;
 	creaseOptions.spacing /= prepared.diagonal;
-	const Creases creases = findCreases(
-		prepared.cloud, minimum, creaseOptions, context.progress.sub(0.85, 1.0, "Finding creases"));
+	const Creases creases =
+		findCreases(index, creaseOptions, context.progress.sub(0.85, 1.0, "Finding creases"));
 	results.seconds("creases", stage.lap());
 
 	double length = 0.0;

@@ -46,10 +46,11 @@ FilterResults apply(const FilterContext& context, const DirectionSmoothingOption
 		context.progress.sub(0.7, 1.0, "Smoothing directions"));
 	results.seconds("smoothing", stage.lap());
 
-	CurvatureField field          = *curvature.field;
-	field.d1                      = std::move(smoothed.d1);
-	field.d2                      = std::move(smoothed.d2);
-	const UmbilicRegions umbilics = findUmbilics(estimate.prepared.cloud, field, estimate.minimum);
+	CurvatureField field = *curvature.field;
+	field.d1             = std::move(smoothed.d1);
+	field.d2             = std::move(smoothed.d2);
+	const UmbilicRegions umbilics =
+		findUmbilics(estimate.prepared.cloud, field, estimate.index.minimum());
 	writeCurvature(
 		layer, points, rawCurvatures(points.normals, estimate.prepared, field, umbilics.umbilic));
 

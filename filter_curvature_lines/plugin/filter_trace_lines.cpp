@@ -7,7 +7,7 @@
 #include "polyline_layer.h"
 #include "shared_parameters.h"
 
-#include "reconstruction.h"
+#include "stages.h"
 
 namespace curvature_lines {
 
@@ -121,15 +121,17 @@ LineTracingOptions tracingOptions(const LineTracingOptions& given, double diagon
 
 // The lines of the default mesh of the cloud as it is.
 LineNetwork positionFieldLines(
-	const PointCloud& cloud, const LineTracingOptions& tracing, const Progress& progress)
+	const CurvatureEstimate&  estimate,
+	const CurvatureField&     field,
+	const LineTracingOptions& tracing,
+	const Progress&           progress)
 {
-	ReconstructionOptions options;
-	options.rejectOutliers  = false;
-	options.denoise         = false;
-	options.pointsPerVertex = 0.0;
-	options.keepLines       = true;
-	options.tracing         = tracing;
-	return reconstruct(cloud, options, progress).lines;
+	FieldMeshOptions options;
+	options.tracing   = tracing;
+	options.keepLines = true;
+	StageClock clock;
+	return meshOfPositionField(adoptEstimate(estimate.index, field), options, clock, progress)
+	    .mesh.lines;
 }
 
 FilterResults apply(const FilterContext& context, const Options& given)
@@ -148,29 +150,29 @@ FilterResults apply(const FilterContext& context, const Options& given)
 	const PointCloud&        cloud    = estimate.prepared.cloud;
 	results.seconds("curvature", stage.lap());
 
-	if (given.smoothDirections && !curvature.ownDirections) {
-		DirectionSmoothingResult smoothed = smoothDirections(
-			cloud, *curvature.field, {}, context.progress.sub(0.3, 0.5, "Smoothing directions"));
-		auto field      = std::make_shared<CurvatureField>(*curvature.field);
-		field->d1       = std::move(smoothed.d1);
-		field->d2       = std::move(smoothed.d2);
-		curvature.field = field;
-		results.seconds("smoothing", stage.lap());
+	const LineTracingOptions tracing  = tracingOptions(given.tracing, estimate.prepared.diagonal);
+	const Progress           progress = context.progress.sub(0.3, 1.0, "Tracing lines");
+	UmbilicRegions           umbilics;
+	LineNetwork              lines;
+	if (given.method == Method::PositionField) {
+		umbilics = findUmbilics(cloud, *curvature.field, estimate.index.minimum(), umbilicOptions);
+		results.seconds("umbilics", stage.lap());
+		lines = positionFieldLines(estimate, *curvature.field, tracing, progress);
+		results.seconds("tracing", stage.lap());
 	}
-	const UmbilicRegions umbilics =
-		findUmbilics(cloud, *curvature.field, estimate.minimum, umbilicOptions);
-	results.seconds("umbilics", stage.lap());
-	const VoronoiCells cells(
-		cloud.positions, context.progress.sub(0.5, 0.6, "Finding Voronoi cells"));
-	results.seconds("voronoi", stage.lap());
-	const LineTracingOptions options = tracingOptions(given.tracing, estimate.prepared.diagonal);
-	const Progress           tracing = context.progress.sub(0.6, 1.0, "Tracing lines");
-	const LineNetwork        lines =
-        given.method == Method::PositionField
-				   ? positionFieldLines(cloud, options, tracing)
-				   : traceLines(
-                  cloud, *curvature.field, estimate.minimum, umbilics, cells, options, tracing);
-	results.seconds("tracing", stage.lap());
+	else {
+		LineOptions options;
+		options.smoothDirections = given.smoothDirections && !curvature.ownDirections;
+		options.umbilics         = umbilicOptions;
+		options.tracing          = tracing;
+		StageClock  clock;
+		TracedLines traced = followDirections(
+			estimate.index.withNormals(cloud.normals), *curvature.field, options, clock, progress);
+		umbilics = std::move(traced.umbilics);
+		lines    = std::move(traced.lines);
+		for (const auto& [name, seconds] : clock.seconds())
+			results.seconds(name == "directions" ? "smoothing" : name, seconds);
+	}
 	if (lines.lines() == 0)
 		throw MLException(
 			"no line of curvature was found: the surface is flat or umbilic everywhere, or the "

@@ -47,9 +47,9 @@ inline EstimatedField estimateField(
 	options.paper     = paper;
 	EstimatedField result;
 	result.prepared = prepareCloud(positions, normals);
-	const NeighborSearch search(result.prepared.cloud.positions);
-	result.minimum = minimumNeighborhoods(result.prepared.cloud, search);
-	result.field   = estimateCurvature(result.prepared.cloud, search, result.minimum, options);
+	const CloudIndex index(result.prepared.cloud);
+	result.minimum = index.minimum();
+	result.field   = estimateCurvature(index, options);
 	return result;
 }
 

@@ -104,6 +104,19 @@ double thickness(const Eigen::Matrix3Xd& positions)
 
 } // namespace
 
+Eigen::Matrix3Xd columnsOf(const Eigen::Matrix3Xd& columns, const std::vector<Index>& which)
+{
+	Eigen::Matrix3Xd chosen(3, which.size());
+	for (std::size_t k = 0; k < which.size(); ++k)
+		chosen.col(k) = columns.col(which[k]);
+	return chosen;
+}
+
+PointCloud columnsOf(const PointCloud& cloud, const std::vector<Index>& which)
+{
+	return {columnsOf(cloud.positions, which), columnsOf(cloud.normals, which)};
+}
+
 NeighborLists NeighborLists::fromRows(const std::vector<std::vector<Index>>& rows)
 {
 	std::size_t total = 0;

@@ -28,6 +28,10 @@ struct PointCloud {
 	Index size() const { return static_cast<Index>(positions.cols()); }
 };
 
+// The chosen columns of a 3 x N matrix, in the order of `which`; the chosen points of a cloud.
+Eigen::Matrix3Xd columnsOf(const Eigen::Matrix3Xd& columns, const std::vector<Index>& which);
+PointCloud columnsOf(const PointCloud& cloud, const std::vector<Index>& which);
+
 // Variable-length rows in one block (CSR). Row i holds indices[offsets[i] .. offsets[i + 1]).
 struct NeighborLists {
 	struct Row {

@@ -26,21 +26,17 @@ struct DenoisingResult {
 	double initialEnergy = 0.0, finalEnergy = 0.0;
 };
 
-// What the energy is made of.
-struct CorrectedNormals {
-	const Eigen::Matrix3Xd&     normals; // of the robust curvature estimate
-	const NeighborSearch&       search;
-	const MinimumNeighborhoods& minimum;
-};
+// Looks at positions, and at the cloud's normals for the side of the surface they are on.
+DenoisingResult denoiseByProjection(
+	const CloudIndex&             index,
+	const RobustDenoisingOptions& options  = {},
+	const Progress&               progress = {});
 
-// Estimates curvature. Only Method::Paper asks for it: the robust method looks at positions, and at the
-// cloud's normals for the side of the surface they are on.
-using NormalCorrection = std::function<CorrectedNormals(const Progress&)>;
-
-DenoisingResult denoise(
-	const PointCloud&       cloud,
-	const NormalCorrection& correction,
-	const DenoisingOptions& options  = {},
-	const Progress&         progress = {});
+// The published energy. Its normals are those of the robust curvature estimate of the same points.
+DenoisingResult denoiseAsPublished(
+	const CloudIndex&             index,
+	const Eigen::Matrix3Xd&       correctedNormals, // 3 x N unit
+	const EnergyDenoisingOptions& options  = {},
+	const Progress&               progress = {});
 
 } // namespace curvature_lines

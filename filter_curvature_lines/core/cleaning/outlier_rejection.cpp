@@ -9,16 +9,14 @@ namespace curvature_lines {
 namespace {
 
 OutlierResult rejectByPublishedVotes(
-	const PointCloud& cloud, const OutlierOptions& options, const Progress& progress)
+	const CloudIndex& index, const OutlierOptions& options, const Progress& progress)
 {
-	const NeighborSearch       search(cloud.positions);
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(
-		cloud, search, options.neighborhood, progress.sub(0.0, 0.1, "Finding neighbors"));
-	const CurvatureField field = robustCurvature(
-		cloud, search, minimum, options.curvature, progress.sub(0.1, 0.9, "Estimating curvature"));
+	index.minimum(progress.sub(0.0, 0.1, "Finding neighbors"));
+	const CurvatureField field =
+		robustCurvature(index, options.curvature, progress.sub(0.1, 0.9, "Estimating curvature"));
 	OutlierResult result = voteOutliers(field, options.voteThreshold);
 	result.heightDeviation =
-		voterHeightDeviation(cloud.positions, progress.sub(0.9, 1.0, "Measuring the noise"));
+		voterHeightDeviation(index, progress.sub(0.9, 1.0, "Measuring the noise"));
 	return result;
 }
 
@@ -49,12 +47,12 @@ OutlierResult voteOutliers(const CurvatureField& field, double voteThreshold)
 }
 
 OutlierResult
-rejectOutliers(const PointCloud& cloud, const OutlierOptions& options, const Progress& progress)
+rejectOutliers(const CloudIndex& index, const OutlierOptions& options, const Progress& progress)
 {
 	OutlierResult result =
 		options.mode == OutlierOptions::Mode::Paper
-			? rejectByPublishedVotes(cloud, options, progress)
-			: rejectByRobustVotes(cloud.positions, options.sensitivity, options.rounds, progress);
+			? rejectByPublishedVotes(index, options, progress)
+			: rejectByRobustVotes(index, options.sensitivity, options.rounds, progress);
 	progress.report(1.0);
 	return result;
 }

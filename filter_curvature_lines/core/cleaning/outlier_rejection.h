@@ -16,9 +16,8 @@ struct OutlierOptions {
 	double sensitivity = 3.5;
 	Index  rounds      = 3; // Robust: re-estimation without the points rejected before, at most
 	// Paper: rejected when more than this share of the votes is against (A09: 1/2).
-	double                     voteThreshold = 0.5;
-	MinimumNeighborhoodOptions neighborhood;
-	RobustCurvatureOptions     curvature;
+	double                 voteThreshold = 0.5;
+	RobustCurvatureOptions curvature;
 };
 
 // The published vote for one given curvature field, one round: a point is flagged when more than
@@ -27,6 +26,6 @@ struct OutlierOptions {
 OutlierResult voteOutliers(const CurvatureField& field, double voteThreshold);
 
 OutlierResult rejectOutliers(
-	const PointCloud& cloud, const OutlierOptions& options = {}, const Progress& progress = {});
+	const CloudIndex& index, const OutlierOptions& options = {}, const Progress& progress = {});
 
 } // namespace curvature_lines

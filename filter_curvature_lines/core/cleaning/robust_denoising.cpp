@@ -9,8 +9,6 @@
 #include <optional>
 
 #include "blended_surface.h"
-#include "gate_normals.h"
-#include "local_spacing.h"
 #include "point_deviation.h"
 #include "quantile.h"
 
@@ -101,7 +99,7 @@ struct Candidate {
 
 class RobustDenoiser {
 public:
-	RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options);
+	RobustDenoiser(const CloudIndex& index, const RobustDenoisingOptions& options);
 	RobustDenoisingResult run(const Progress& progress);
 
 private:
@@ -133,6 +131,7 @@ private:
 		const Progress&           progress) const;
 	double score(const Candidate& candidate, const std::vector<Index>& points) const;
 
+	CloudIndex                m_index;
 	RobustDenoisingOptions    m_options;
 	BlendInput                m_input;
 	std::optional<BlendGuide> m_start;      // the input itself
@@ -143,25 +142,29 @@ private:
 	std::vector<double>       m_unit;       // of radii per point, a length
 };
 
-RobustDenoiser::RobustDenoiser(const PointCloud& cloud, const RobustDenoisingOptions& options) :
-		m_options(options), m_input{SpatialOrder(cloud.positions), {}, {}, {}},
-		m_everywhere(cloud.size()), m_test(m_input.order.sample(testPoints)), m_offEdges(m_test)
+RobustDenoiser::RobustDenoiser(const CloudIndex& index, const RobustDenoisingOptions& options) :
+		m_index(index), m_options(options),
+		m_input{
+			index.order(),
+			{index.arrangedPositions(), index.order().arrange(index.cloud().normals)},
+			{},
+			{}},
+		m_everywhere(index.size()), m_test(m_input.order.sample(testPoints)), m_offEdges(m_test)
 {
-	m_input.cloud = {m_input.order.arrange(cloud.positions), m_input.order.arrange(cloud.normals)};
 	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
 }
 
 void RobustDenoiser::prepare(const Progress& progress)
 {
-	const PointCloud&    cloud = m_input.cloud;
-	const NeighborSearch search(cloud.positions);
-	m_input.spacing = localSpacing(cloud, search, m_input.order, progress.sub(0.0, 0.5, stage));
+	const PointCloud& cloud = m_input.cloud;
+	m_input.spacing         = m_index.spacing(progress.sub(0.0, 0.5, stage));
 	// Only the side of the normals matters, and that of a single one may be wrong.
-	Eigen::Matrix3Xd normals = gateNormals(cloud, search, progress.sub(0.5, 1.0, stage));
+	Eigen::Matrix3Xd normals =
+		m_input.order.arrange(m_index.gateNormals(progress.sub(0.5, 1.0, stage)));
 	for (Index i = 0; i < size(); ++i)
 		if (cloud.normals.col(i).dot(normals.col(i)) > 0.0)
 			normals.col(i) = cloud.normals.col(i);
-	m_start.emplace(cloud.positions, std::move(normals));
+	m_start.emplace(cloud.positions, std::move(normals), m_index.arrangedSearch());
 }
 
 std::vector<double> RobustDenoiser::inSpacings(const std::vector<double>& lengths) const
@@ -498,11 +501,11 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 } // namespace
 
 RobustDenoisingResult denoiseRobustly(
-	const PointCloud& cloud, const RobustDenoisingOptions& options, const Progress& progress)
+	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress)
 {
-	if (cloud.size() < fewestPoints)
-		return {cloud.positions, cloud.normals, options.noise, options.radius};
-	return RobustDenoiser(cloud, options).run(progress);
+	if (index.size() < fewestPoints)
+		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius};
+	return RobustDenoiser(index, options).run(progress);
 }
 
 } // namespace curvature_lines

@@ -3,8 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "point_cloud.h"
-#include "progress.h"
+#include "cloud_index.h"
 
 namespace curvature_lines {
 
@@ -23,7 +22,7 @@ struct RobustDenoisingResult {
 };
 
 RobustDenoisingResult denoiseRobustly(
-	const PointCloud&             cloud,
+	const CloudIndex&             index,
 	const RobustDenoisingOptions& options  = {},
 	const Progress&               progress = {});
 

@@ -7,7 +7,6 @@
 
 #include "outlier_groups.h"
 #include "quantile.h"
-#include "spatial_order.h"
 
 namespace curvature_lines {
 
@@ -57,7 +56,7 @@ constexpr double rejectedPeers    = 0.4;
 
 class RobustVote {
 public:
-	RobustVote(const Matrix3Xd& positions, double sensitivity, const Progress& progress);
+	RobustVote(const CloudIndex& index, double sensitivity, const Progress& progress);
 	void fitVoters(const Progress& progress);
 	bool vote(const Progress& progress); // true when something changed
 	double heightDeviation() const;
@@ -76,12 +75,13 @@ private:
 	Index neighborsWanted(const OutlierVoter& voter) const;
 	Index size() const { return static_cast<Index>(m_positions.cols()); }
 
-	const SpatialOrder  m_order;
-	const Matrix3Xd     m_positions; // in this order, as everything below
-	double              m_sensitivity;
-	NeighborSearch      m_search;
-	std::vector<double> m_crowding;
-	Index               m_largest, m_neighbors;
+	const CloudIndex      m_index;
+	const SpatialOrder&   m_order;
+	const Matrix3Xd&      m_positions; // in this order, as everything below
+	const NeighborSearch& m_search;
+	double                m_sensitivity;
+	std::vector<double>   m_crowding;
+	Index                 m_largest, m_neighbors;
 
 	std::vector<OutlierVoter> m_voters;
 	std::vector<char>         m_stale;    // voters to be fitted again
@@ -91,9 +91,9 @@ private:
 	Index                     m_isolated = 0;
 };
 
-RobustVote::RobustVote(const Matrix3Xd& positions, double sensitivity, const Progress& progress) :
-		m_order(positions), m_positions(m_order.arrange(positions)), m_sensitivity(sensitivity),
-		m_search(m_positions), m_crowding(size()),
+RobustVote::RobustVote(const CloudIndex& index, double sensitivity, const Progress& progress) :
+		m_index(index), m_order(index.order()), m_positions(index.arrangedPositions()),
+		m_search(index.arrangedSearch()), m_sensitivity(sensitivity), m_crowding(size()),
 		m_largest(std::max(fewestNeighbors, size() / smallestShare)),
 		m_neighbors(std::min(usualNeighbors, m_largest)), m_verdicts(size()), m_rejected(size(), 0)
 {
@@ -356,9 +356,9 @@ OutlierResult RobustVote::result() const
 } // namespace
 
 OutlierResult rejectByRobustVotes(
-	const Matrix3Xd& positions, double sensitivity, Index rounds, const Progress& progress)
+	const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
 {
-	RobustVote  votes(positions, sensitivity, progress.sub(0.0, 0.05, "Finding neighbors"));
+	RobustVote  votes(index, sensitivity, progress.sub(0.0, 0.05, "Finding neighbors"));
 	const Index most = std::max<Index>(rounds, 1);
 	Index       used = 0;
 	for (bool changed = true; changed && used < most; ++used) {
@@ -373,9 +373,9 @@ OutlierResult rejectByRobustVotes(
 	return result;
 }
 
-double voterHeightDeviation(const Matrix3Xd& positions, const Progress& progress)
+double voterHeightDeviation(const CloudIndex& index, const Progress& progress)
 {
-	RobustVote votes(positions, 0.0, progress.sub(0.0, 0.1, "Measuring the noise"));
+	RobustVote votes(index, 0.0, progress.sub(0.0, 0.1, "Measuring the noise"));
 	votes.fitVoters(progress.sub(0.1, 1.0, "Measuring the noise"));
 	return votes.heightDeviation();
 }

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
 #include "outlier_result.h"
 #include "progress.h"
 
@@ -10,12 +11,12 @@ namespace curvature_lines {
 
 // OutlierOptions::Mode::Robust. Looks at positions only. The same for any order of the points.
 OutlierResult rejectByRobustVotes(
-	const Eigen::Matrix3Xd& positions, // unit frame
-	double                  sensitivity,
-	Index                   rounds,
-	const Progress&         progress = {});
+	const CloudIndex& index, // unit frame
+	double            sensitivity,
+	Index             rounds,
+	const Progress&   progress = {});
 
 // OutlierResult::heightDeviation without a vote.
-double voterHeightDeviation(const Eigen::Matrix3Xd& positions, const Progress& progress = {});
+double voterHeightDeviation(const CloudIndex& index, const Progress& progress = {});
 
 } // namespace curvature_lines

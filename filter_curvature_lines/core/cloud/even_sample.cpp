@@ -6,24 +6,20 @@
 #include <cmath>
 #include <numeric>
 
-#include "local_spacing.h"
-
 namespace curvature_lines {
 
-std::vector<Index> evenSample(const PointCloud& cloud, Index most, const Progress& progress)
+std::vector<Index> evenSample(const CloudIndex& index, Index most, const Progress& progress)
 {
 	constexpr int      steps = 40;
-	const Index        n     = cloud.size();
+	const Index        n     = index.size();
 	std::vector<Index> kept;
 	if (n <= most) {
 		kept.resize(n);
 		std::iota(kept.begin(), kept.end(), 0);
 		return kept;
 	}
-	const SpatialOrder   order(cloud.positions);
-	const PointCloud     arranged = {order.arrange(cloud.positions), order.arrange(cloud.normals)};
-	const NeighborSearch search(arranged.positions);
-	const std::vector<double> spacing = localSpacing(arranged, search, order, progress);
+	const SpatialOrder&        order   = index.order();
+	const std::vector<double>& spacing = index.spacing(progress);
 
 	const auto share = [&](Index place, double wanted) {
 		const double ratio = spacing[place] / wanted;

@@ -36,22 +36,22 @@ std::vector<double> spreadOver(
 }
 
 std::vector<double> localSpacing(
-	const PointCloud&     cloud,
-	const NeighborSearch& search,
-	const SpatialOrder&   order,
-	const Progress&       progress)
+	const Eigen::Matrix3Xd& positions,
+	const NeighborSearch&   search,
+	const SpatialOrder&     order,
+	const Progress&         progress)
 {
 	constexpr Index          k = 16, averaged = 32, thinning = 8;
-	const Index              n      = cloud.size();
+	const Index              n      = static_cast<Index>(positions.cols());
 	const std::vector<Index> sample = order.sample(std::max(std::min(n, averaged), n / thinning));
 	std::vector<double>      side(sample.size());
 	parallelFor(static_cast<Index>(sample.size()), progress.sub(0.0, 0.5, stage), [&](Index s) {
-		const Eigen::Vector3d    position = cloud.positions.col(sample[s]);
+		const Eigen::Vector3d    position = positions.col(sample[s]);
 		const std::vector<Index> near     = search.nearest(position, k + 1);
-		const double             distance = (cloud.positions.col(near.back()) - position).norm();
+		const double             distance = (positions.col(near.back()) - position).norm();
 		side[s]                           = distance * std::sqrt(EIGEN_PI / (near.size() - 1.0));
 	});
-	return spreadOver(cloud.positions, sample, side, averaged, progress.sub(0.5, 1.0, stage));
+	return spreadOver(positions, sample, side, averaged, progress.sub(0.5, 1.0, stage));
 }
 
 } // namespace curvature_lines

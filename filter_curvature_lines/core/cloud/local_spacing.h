@@ -17,11 +17,11 @@ std::vector<double> spreadOver(
 	const Progress&            progress = {});
 
 // Per point, a length: side of the square that holds one point, averaged over some hundred neighbours, so
-// that radii in its unit are alike where patches overlap. `search`: over the positions; `order`: of them.
+// that radii in its unit are alike where patches overlap. `positions` are in `order`, `search` is over them.
 std::vector<double> localSpacing(
-	const PointCloud&     cloud,
-	const NeighborSearch& search,
-	const SpatialOrder&   order,
-	const Progress&       progress = {});
+	const Eigen::Matrix3Xd& positions,
+	const NeighborSearch&   search,
+	const SpatialOrder&     order,
+	const Progress&         progress = {});
 
 } // namespace curvature_lines

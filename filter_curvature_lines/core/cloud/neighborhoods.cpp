@@ -44,8 +44,9 @@ struct ByDistanceThenIndex {
 class NearestSet {
 public:
 	using DistanceType = double;
-	NearestSet(std::vector<DistanceIndex>& found, std::size_t capacity) :
-			m_found(found), m_capacity(capacity)
+	NearestSet(
+		std::vector<DistanceIndex>& found, std::size_t capacity, const std::vector<Index>* names) :
+			m_found(found), m_capacity(capacity), m_names(names)
 	{
 		m_found.clear();
 	}
@@ -60,7 +61,7 @@ public:
 	bool addPoint(double distance, Index index)
 	{
 		const ByDistanceThenIndex less;
-		const DistanceIndex       candidate(distance, index);
+		const DistanceIndex       candidate(distance, m_names ? (*m_names)[index] : index);
 		if (!full())
 			m_found.push_back(candidate);
 		else if (!less(candidate, m_found.back()))
@@ -76,6 +77,7 @@ public:
 private:
 	std::vector<DistanceIndex>& m_found;
 	std::size_t                 m_capacity;
+	const std::vector<Index>*   m_names;
 };
 
 class BallSet {
@@ -277,20 +279,21 @@ struct NeighborSearch::Tree {
 };
 
 NeighborSearch::NeighborSearch(const Eigen::Matrix3Xd& positions) :
-		m_tree(std::make_unique<Tree>(positions))
+		m_tree(std::make_shared<const Tree>(positions))
 {
 }
 
-NeighborSearch::~NeighborSearch()                                    = default;
-NeighborSearch::NeighborSearch(NeighborSearch&&) noexcept            = default;
-NeighborSearch& NeighborSearch::operator=(NeighborSearch&&) noexcept = default;
+NeighborSearch::NeighborSearch(const NeighborSearch& other, const std::vector<Index>& names) :
+		m_tree(other.m_tree), m_names(&names)
+{
+}
 
 std::vector<Index> NeighborSearch::nearest(const Eigen::Vector3d& query, Index k) const
 {
 	if (k <= 0 || m_tree->adaptor.positions.cols() == 0)
 		return {};
 	thread_local std::vector<DistanceIndex> found;
-	NearestSet                              set(found, k);
+	NearestSet                              set(found, k, m_names);
 	m_tree->index.radiusSearchCustomCallback(query.data(), set);
 	return indicesOf(found);
 }
@@ -302,6 +305,8 @@ std::vector<Index> NeighborSearch::within(const Eigen::Vector3d& query, double r
 	thread_local std::vector<DistanceIndex> found;
 	BallSet                                 set(found, radius * radius);
 	m_tree->index.radiusSearchCustomCallback(query.data(), set);
+	for (DistanceIndex& f : found)
+		f.second = nameOf(f.second);
 	std::sort(found.begin(), found.end(), ByDistanceThenIndex());
 	return indicesOf(found);
 }
@@ -314,6 +319,9 @@ void NeighborSearch::within(
 		return;
 	UnsortedBallSet set(found, radius * radius);
 	m_tree->index.radiusSearchCustomCallback(query.data(), set);
+	if (m_names)
+		for (Index& f : found)
+			f = (*m_names)[f];
 }
 
 bool NeighborSearch::anyWithin(const Eigen::Vector3d& query, double radius) const
@@ -325,15 +333,18 @@ bool NeighborSearch::anyWithin(const Eigen::Vector3d& query, double radius) cons
 	return first.size() > 0;
 }
 
-const std::vector<Index>& NeighborSearch::spatialOrder() const
+std::vector<Index> NeighborSearch::spatialOrder() const
 {
-	return m_tree->index.vAcc; // leaf by leaf
+	std::vector<Index> order = m_tree->index.vAcc; // leaf by leaf
+	for (Index& i : order)
+		i = nameOf(i);
+	return order;
 }
 
 void parallelForPoints(
 	const NeighborSearch& search, const Progress& progress, const std::function<void(Index)>& body)
 {
-	const std::vector<Index>& order = search.spatialOrder();
+	const std::vector<Index> order = search.spatialOrder();
 	parallelFor(static_cast<Index>(order.size()), progress, [&](Index k) { body(order[k]); });
 }
 

@@ -10,13 +10,12 @@
 
 namespace curvature_lines {
 
-// A kd-tree over fixed positions (nanoflann behind it). The positions must outlive the tree.
+// A kd-tree over fixed positions (nanoflann behind it). The positions must outlive the tree. Copies share it.
 class NeighborSearch {
 public:
 	explicit NeighborSearch(const Eigen::Matrix3Xd& positions);
-	~NeighborSearch();
-	NeighborSearch(NeighborSearch&&) noexcept;
-	NeighborSearch& operator=(NeighborSearch&&) noexcept;
+	// The same tree with other names: what `other` calls i is names[i] here, a permutation that must outlive this.
+	NeighborSearch(const NeighborSearch& other, const std::vector<Index>& names);
 
 	// Indices of the k nearest points, by increasing distance, ties by index. Fewer if the cloud is smaller.
 	std::vector<Index> nearest(const Eigen::Vector3d& query, Index k) const;
@@ -27,11 +26,14 @@ public:
 	bool anyWithin(const Eigen::Vector3d& query, double radius) const;
 	// All indices, those of points near each other mostly in turn: loops that take them so find in the cache
 	// what the step before has read.
-	const std::vector<Index>& spatialOrder() const;
+	std::vector<Index> spatialOrder() const;
 
 private:
 	struct Tree;
-	std::unique_ptr<Tree> m_tree;
+	Index nameOf(Index i) const { return m_names ? (*m_names)[i] : i; }
+
+	std::shared_ptr<const Tree> m_tree;
+	const std::vector<Index>*   m_names = nullptr; // none: as the tree was built
 };
 
 // parallelFor over the points searched in, those near each other in turn.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "shuffled_order.h"
+
 namespace curvature_lines {
 
 namespace {
@@ -22,14 +24,6 @@ std::uint32_t mortonCode(const Eigen::Vector3d& cell)
 }
 
 } // namespace
-
-Eigen::Matrix3Xd columnsOf(const Eigen::Matrix3Xd& columns, const std::vector<Index>& which)
-{
-	Eigen::Matrix3Xd chosen(3, which.size());
-	for (std::size_t k = 0; k < which.size(); ++k)
-		chosen.col(k) = columns.col(which[k]);
-	return chosen;
-}
 
 SpatialOrder::SpatialOrder(const Eigen::Matrix3Xd& positions)
 {

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "shuffled_order.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
-
-// Columns of a 3 x N matrix.
-Eigen::Matrix3Xd columnsOf(const Eigen::Matrix3Xd& columns, const std::vector<Index>& which);
 
 // Place k in the order belongs to point source[k] of the cloud, whose place in shuffledOrder() is rank[k]:
 // the points with rank[k] < m are a fair sample of m points. Neither depends on the order of the cloud.

@@ -8,7 +8,6 @@
 #include <Eigen/Dense>
 
 #include "crease_network.h"
-#include "shuffled_order.h"
 
 namespace curvature_lines {
 
@@ -74,25 +73,17 @@ elementsOf(const PointCloud& cloud, const NeighborSearch& search, const Progress
 
 } // namespace
 
-Creases findCreases(
-	const PointCloud&           cloud,
-	const MinimumNeighborhoods& minimum,
-	const CreaseOptions&        options,
-	const Progress&             progress)
+Creases findCreases(const CloudIndex& index, const CreaseOptions& options, const Progress& progress)
 {
-	if (cloud.size() == 0 || !(minimum.medianSpacing > 0.0))
+	if (index.size() == 0 || !(index.minimum().medianSpacing > 0.0))
 		return {};
-	const double minAngle = options.minAngle * EIGEN_PI / 180.0;
-	const double step     = autoSpacing * minimum.medianSpacing;
+	const double medianSpacing = index.minimum().medianSpacing;
+	const double minAngle      = options.minAngle * EIGEN_PI / 180.0;
+	const double step          = autoSpacing * medianSpacing;
 	const double spacing =
-		options.spacing > 0.0 ? std::max(options.spacing, finest * minimum.medianSpacing) : step;
-	const std::vector<Index> order    = shuffledOrder(cloud.positions);
-	PointCloud               shuffled = cloud;
-	for (std::size_t k = 0; k < order.size(); ++k) {
-		shuffled.positions.col(k) = cloud.positions.col(order[k]);
-		shuffled.normals.col(k)   = cloud.normals.col(order[k]);
-	}
-	const NeighborSearch search(shuffled.positions);
+		options.spacing > 0.0 ? std::max(options.spacing, finest * medianSpacing) : step;
+	const PointCloud      shuffled = columnsOf(index.cloud(), index.shuffled());
+	const NeighborSearch& search   = index.shuffledSearch();
 	const auto elements       = elementsOf(shuffled, search, progress.sub(0.0, 0.3, progressLabel));
 	const CreasePoints points = findCreasePoints(
 		elements, search, followShare * minAngle, progress.sub(0.3, 0.9, progressLabel));

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
 #include "crease_curves.h"
-#include "neighborhoods.h"
 
 namespace curvature_lines {
 
@@ -19,9 +19,6 @@ struct CreaseOptions {
 // The normals must keep to one face, as those of a denoised cloud do (robust_denoising.h). A rim is no crease.
 // Same result for any order of the points.
 Creases findCreases(
-	const PointCloud&           cloud,
-	const MinimumNeighborhoods& minimum,
-	const CreaseOptions&        options  = {},
-	const Progress&             progress = {});
+	const CloudIndex& index, const CreaseOptions& options = {}, const Progress& progress = {});
 
 } // namespace curvature_lines

@@ -7,10 +7,9 @@
 
 #include <Eigen/Dense>
 
-#include "gate_normals.h"
 #include "quantile.h"
+#include "robust_curvature.h"
 #include "robust_kernel.h"
-#include "shuffled_order.h"
 
 namespace curvature_lines {
 
@@ -22,17 +21,6 @@ constexpr Index  minPoints       = 8;
 constexpr double blendRadius     = 0.5;   // of the height radius
 constexpr double sameFace        = 0.8;   // dot product of normals
 constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
-
-PointCloud
-reordered(const PointCloud& cloud, const Eigen::Matrix3Xd& gate, const std::vector<Index>& order)
-{
-	PointCloud shuffled{Eigen::Matrix3Xd(3, order.size()), Eigen::Matrix3Xd(3, order.size())};
-	for (std::size_t k = 0; k < order.size(); ++k) {
-		shuffled.positions.col(k) = cloud.positions.col(order[k]);
-		shuffled.normals.col(k)   = gate.col(order[k]);
-	}
-	return shuffled;
-}
 
 // Anchors of one scale with their shape operators, ready to be interpolated.
 class ScaleField {
@@ -208,12 +196,10 @@ std::vector<ScaleMixture> mixturesAtPoints(const PointCloud& cloud, const ScaleS
 } // namespace
 
 AdaptiveSurface adaptiveSurface(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const AdaptiveScaleOptions& options,
-	const Progress&             progress)
+	const CloudIndex& index, const AdaptiveScaleOptions& options, const Progress& progress)
 {
-	AdaptiveSurface surface;
+	const PointCloud& cloud = index.cloud();
+	AdaptiveSurface   surface;
 	surface.elements.resize(cloud.size());
 	for (SurfaceElement& element : surface.elements)
 		element.normal.setZero();
@@ -221,10 +207,10 @@ AdaptiveSurface adaptiveSurface(
 		values->setZero(cloud.size());
 	if (cloud.size() < minPoints)
 		return surface;
-	const std::vector<Index> order = shuffledOrder(cloud.positions);
-	const Eigen::Matrix3Xd   gate =
-		gateNormals(cloud, search, progress.sub(0.0, 0.05, progressLabel));
-	const PointSample    sample(reordered(cloud, gate, order));
+	const std::vector<Index>& order = index.shuffled();
+	const Eigen::Matrix3Xd&   gate  = index.gateNormals(progress.sub(0.0, 0.05, progressLabel));
+	const PointSample         sample(
+        {columnsOf(cloud.positions, order), columnsOf(gate, order)}, index.shuffledSearch());
 	const ScaleSelection selection =
 		selectScales(sample, options, progress.sub(0.05, 0.7, progressLabel));
 	const Index n = cloud.size();
@@ -312,14 +298,15 @@ void setPrincipal(
 }
 
 void setWeights(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
-	const AdaptiveSurface&      surface,
-	CurvatureField&             field,
-	const Progress&             progress)
+	const CloudIndex&      index,
+	const AdaptiveSurface& surface,
+	CurvatureField&        field,
+	const Progress&        progress)
 {
-	const Index                      n = cloud.size();
+	const PointCloud&                cloud   = index.cloud();
+	const NeighborSearch&            search  = index.search();
+	const std::vector<double>&       spacing = index.minimum().spacing;
+	const Index                      n       = cloud.size();
 	const RobustCurvatureOptions     published;
 	std::vector<std::vector<Index>>  rows(n);
 	std::vector<std::vector<double>> residuals(n);
@@ -331,7 +318,7 @@ void setWeights(
 		const SurfaceElement&                              own   = surface.elements[i];
 		if (!own.valid)
 			return;
-		search.within(cloud.positions.col(i), weightReach * minimum.spacing[i], found);
+		search.within(cloud.positions.col(i), weightReach * spacing[i], found);
 		near.clear();
 		for (const Index j : found)
 			if (j != i && surface.elements[j].valid)
@@ -380,15 +367,12 @@ void setWeights(
 } // namespace
 
 CurvatureField adaptiveCurvature(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
-	const AdaptiveScaleOptions& options,
-	const Progress&             progress)
+	const CloudIndex& index, const AdaptiveScaleOptions& options, const Progress& progress)
 {
-	const Index           n = cloud.size();
+	const PointCloud&     cloud = index.cloud();
+	const Index           n     = cloud.size();
 	const AdaptiveSurface surface =
-		adaptiveSurface(cloud, search, options, progress.sub(0.0, 0.95, progressLabel));
+		adaptiveSurface(index, options, progress.sub(0.0, 0.95, progressLabel));
 	CurvatureField field;
 	for (auto* values : {&field.k1, &field.k2, &field.error, &field.confidence, &field.height})
 		values->setZero(n);
@@ -397,7 +381,7 @@ CurvatureField adaptiveCurvature(
 	field.radius           = surface.radius;
 	field.feature          = surface.feature;
 	field.correctedNormals = cloud.normals;
-	field.status           = minimum.status;
+	field.status           = index.minimum().status;
 	for (Index i = 0; i < n; ++i) {
 		const SurfaceElement& element = surface.elements[i];
 		const Eigen::Vector3d given   = cloud.normals.col(i);
@@ -418,8 +402,7 @@ CurvatureField adaptiveCurvature(
 		if (field.status[i] == PointStatus::TooFewNeighbors)
 			field.status[i] = PointStatus::Boundary;
 	}
-	setWeights(
-		cloud, search, minimum, surface, field, progress.sub(0.95, 1.0, "Weighing neighbors"));
+	setWeights(index, surface, field, progress.sub(0.95, 1.0, "Weighing neighbors"));
 	return field;
 }
 

@@ -4,7 +4,8 @@
 #pragma once
 
 #include "adaptive_scale.h"
-#include "robust_curvature.h"
+#include "cloud_index.h"
+#include "curvature_field.h"
 
 namespace curvature_lines {
 
@@ -19,8 +20,7 @@ struct AdaptiveSurface {
 
 // Given normals tell the side of the surface only. Same result for any order of the points.
 AdaptiveSurface adaptiveSurface(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
+	const CloudIndex&           index,
 	const AdaptiveScaleOptions& options  = {},
 	const Progress&             progress = {});
 
@@ -29,9 +29,7 @@ AdaptiveSurface adaptiveSurface(
 // those of A09 section 4.1 point by point: Geman-McClure weights of what the neighbours' normals differ
 // from the estimate's prediction.
 CurvatureField adaptiveCurvature(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
+	const CloudIndex&           index,
 	const AdaptiveScaleOptions& options  = {},
 	const Progress&             progress = {});
 

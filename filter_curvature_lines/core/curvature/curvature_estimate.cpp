@@ -27,15 +27,13 @@ bool operator==(const CurvatureOptions& a, const CurvatureOptions& b)
 }
 
 CurvatureField estimateCurvature(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
-	const CurvatureOptions&     options,
-	const Progress&             progress)
+	const CloudIndex& index, const CurvatureOptions& options, const Progress& progress)
 {
+	index.minimum(progress.sub(0.0, 0.1, "Finding neighborhoods"));
+	const Progress rest = progress.sub(0.1, 1.0, "Estimating curvature");
 	return options.scaleMode == ScaleMode::Adaptive
-	           ? adaptiveCurvature(cloud, search, minimum, options.adaptive, progress)
-	           : robustCurvature(cloud, search, minimum, options.paper, progress);
+	           ? adaptiveCurvature(index, options.adaptive, rest)
+	           : robustCurvature(index, options.paper, rest);
 }
 
 Eigen::Matrix3Xd surfaceNormals(const CurvatureField& field)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "adaptive_curvature.h"
+#include "robust_curvature.h"
 
 namespace curvature_lines {
 
@@ -20,14 +21,10 @@ struct CurvatureOptions {
 // Whether both ask for the same estimate: options of the mode that is not chosen do not count.
 bool operator==(const CurvatureOptions& a, const CurvatureOptions& b);
 
-// Directions are tangent to cloud.normals with Paper. With Adaptive they are tangent to the fitted
+// Directions are tangent to the cloud's normals with Paper. With Adaptive they are tangent to the fitted
 // surface, see surfaceNormals().
 CurvatureField estimateCurvature(
-	const PointCloud&           cloud,
-	const NeighborSearch&       search,
-	const MinimumNeighborhoods& minimum,
-	const CurvatureOptions&     options  = {},
-	const Progress&             progress = {});
+	const CloudIndex& index, const CurvatureOptions& options = {}, const Progress& progress = {});
 
 // 3 x N unit: the normals the directions of a field are tangent to, n = d1 x d2.
 Eigen::Matrix3Xd surfaceNormals(const CurvatureField& field);

@@ -10,18 +10,10 @@ namespace {
 
 constexpr Index linkedProbes = 12;
 
-Eigen::Matrix3Xd columns(const Eigen::Matrix3Xd& positions, const std::vector<Index>& chosen)
-{
-	Eigen::Matrix3Xd result(3, chosen.size());
-	for (std::size_t k = 0; k < chosen.size(); ++k)
-		result.col(k) = positions.col(chosen[k]);
-	return result;
-}
-
 } // namespace
 
 ProbeComponent::ProbeComponent(const Eigen::Matrix3Xd& positions, std::vector<Index> probes) :
-		m_probes(std::move(probes)), m_positions(columns(positions, m_probes)),
+		m_probes(std::move(probes)), m_positions(columnsOf(positions, m_probes)),
 		m_search(m_positions)
 {
 }

@@ -41,16 +41,13 @@ public:
 	CentreFits centreFits(Index i, const Eigen::Vector3d& normal);
 	Estimate estimate(Index i, CentreFits centre, double commonScale);
 
-	static PointEstimator& ofThisThread(
-		const PointCloud&             cloud,
-		const NeighborSearch&         search,
-		const MinimumNeighborhoods&   minimum,
-		const RobustCurvatureOptions& options)
+	static PointEstimator&
+	ofThisThread(const CloudIndex& index, const RobustCurvatureOptions& options)
 	{
 		thread_local PointEstimator estimator;
-		estimator.m_cloud   = &cloud;
-		estimator.m_search  = &search;
-		estimator.m_minimum = &minimum;
+		estimator.m_cloud   = &index.cloud();
+		estimator.m_search  = &index.search();
+		estimator.m_minimum = &index.minimum();
 		estimator.m_options = &options;
 		return estimator;
 	}
@@ -241,15 +238,14 @@ void setPrincipalCurvatures(
 } // namespace
 
 CurvatureField robustCurvature(
-	const PointCloud&             cloud,
-	const NeighborSearch&         search,
-	const MinimumNeighborhoods&   minimum,
-	const RobustCurvatureOptions& options,
-	const Progress&               progress)
+	const CloudIndex& index, const RobustCurvatureOptions& options, const Progress& progress)
 {
-	const Index n         = cloud.size();
-	const auto  estimator = [&]() -> PointEstimator& {
-        return PointEstimator::ofThisThread(cloud, search, minimum, options);
+	const PointCloud&           cloud     = index.cloud();
+	const NeighborSearch&       search    = index.search();
+	const MinimumNeighborhoods& minimum   = index.minimum();
+	const Index                 n         = cloud.size();
+	const auto                  estimator = [&]() -> PointEstimator& {
+        return PointEstimator::ofThisThread(index, options);
 	};
 	std::vector<CentreFits> centre(n);
 	if (options.featureGate && options.robust)

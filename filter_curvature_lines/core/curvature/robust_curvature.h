@@ -3,9 +3,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
 #include "curvature_field.h"
 #include "members.h"
-#include "neighborhoods.h"
 #include "robust_kernel.h"
 
 namespace curvature_lines {
@@ -32,9 +32,7 @@ inline bool operator==(const RobustCurvatureOptions& a, const RobustCurvatureOpt
 }
 
 CurvatureField robustCurvature(
-	const PointCloud&             cloud,
-	const NeighborSearch&         search,
-	const MinimumNeighborhoods&   minimum,
+	const CloudIndex&             index,
 	const RobustCurvatureOptions& options  = {},
 	const Progress&               progress = {});
 

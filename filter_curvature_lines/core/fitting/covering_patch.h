@@ -31,6 +31,13 @@ struct BlendGuide {
 			search(positions)
 	{
 	}
+	// `found`: over the same positions.
+	BlendGuide(
+		Eigen::Matrix3Xd guidePositions, Eigen::Matrix3Xd guideNormals, NeighborSearch found) :
+			positions(std::move(guidePositions)), normals(std::move(guideNormals)),
+			search(std::move(found))
+	{
+	}
 	BlendGuide(const BlendGuide&)            = delete; // the search refers to the positions
 	BlendGuide& operator=(const BlendGuide&) = delete;
 

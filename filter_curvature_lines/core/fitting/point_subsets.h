@@ -13,6 +13,11 @@ namespace curvature_lines {
 // Points with their search tree. Stays where it is: the tree refers to the points.
 struct PointSample {
 	explicit PointSample(PointCloud points) : cloud(std::move(points)), search(cloud.positions) {}
+	// `found`: over the same points, in their order.
+	PointSample(PointCloud points, NeighborSearch found) :
+			cloud(std::move(points)), search(std::move(found))
+	{
+	}
 	PointSample(const PointSample&) = delete;
 
 	const PointCloud     cloud;

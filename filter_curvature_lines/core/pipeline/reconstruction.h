@@ -1,24 +1,9 @@
-// The whole pipeline (A09 fig. 1): outliers out, points denoised, curvature, directions, lines, mesh.
-// A09 estimates curvature first; robust outlier rejection and denoising need none, so that it is estimated
-// once. The stages share their engine (local_polynomial.h, surface_patch.h) and the order of the points
-// (shuffled_order.h), but neither search trees nor noise: every stage sees other positions, and what large
-// voters miss, detail included, is no measure of what small patches call noise.
+// From a cloud to a quad mesh in one step: the recipe of this project, and that of A09 fig. 1.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
-#include <string>
-
-#include "creases.h"
-#include "curvature_estimate.h"
-#include "denoising.h"
-#include "direction_smoothing.h"
-#include "line_network.h"
-#include "line_tracing.h"
-#include "mesh_finishing.h"
-#include "outlier_rejection.h"
-#include "position_field_mesh.h"
-#include "umbilics.h"
+#include "quad_mesh.h"
+#include "stages.h"
 
 namespace curvature_lines {
 
@@ -26,16 +11,15 @@ struct ReconstructionOptions {
 	// PositionField: the lines are where two phases on a triangulated scaffold are whole numbers. TracedLines:
 	// as published.
 	enum class Method { PositionField, TracedLines };
-	Method                     method           = Method::PositionField;
-	bool                       rejectOutliers   = true;
-	bool                       denoise          = true;
-	bool                       smoothDirections = true;
-	CurvatureOptions           curvature;
-	MinimumNeighborhoodOptions neighborhood;
-	OutlierOptions             outliers;
-	DenoisingOptions           denoising;
-	DirectionSmoothingOptions  directions;
-	UmbilicOptions             umbilics;
+	Method                    method           = Method::PositionField;
+	bool                      rejectOutliers   = true;
+	bool                      denoise          = true;
+	bool                      smoothDirections = true; // TracedLines
+	CurvatureOptions          curvature;
+	OutlierOptions            outliers;
+	DenoisingOptions          denoising;
+	DirectionSmoothingOptions directions;
+	UmbilicOptions            umbilics;
 	// targetVertices 0 and epsilon 0: from the size of the cloud; both methods
 	LineTracingOptions tracing;
 	CreaseOptions      creases; // PositionField
@@ -72,14 +56,25 @@ struct ReconstructionResult {
 	std::map<std::string, double> seconds;       // per stage: outliers, neighborhoods, curvature, …
 };
 
-// The mesh may come out empty (too sparse a cloud); that is for the caller to report.
-ReconstructionResult reconstruct(
-	const PointCloud&            cloud, // prepared (unit frame)
+// Outliers out, dense clouds thinned, curvature of the noisy points, denoising, creases, and the mesh of a position
+// field on the cleaned points. `given`: prepared (unit frame). The mesh may come out empty (too sparse a cloud); that
+// is for the caller to report.
+ReconstructionResult adaptiveRecipe(
+	const CloudIndex&            given,
 	const ReconstructionOptions& options  = {},
 	const Progress&              progress = {});
 
-// How many vertices a mesh of a cloud of n points gets when nobody says: one per 16 points, faces about
-// four point spacings wide; small clouds, which show little in so few, up to one per 4 points.
-Index automaticTargetVertices(Index n);
+// A09 fig. 1: outliers out, denoising, curvature of the denoised points, directions smoothed, lines traced, faces
+// between their crossings. The stages' own options say whether each of them is the published one.
+ReconstructionResult publishedRecipe(
+	const CloudIndex&            given,
+	const ReconstructionOptions& options  = {},
+	const Progress&              progress = {});
+
+// The one that options.method asks for.
+ReconstructionResult reconstruct(
+	const CloudIndex&            given,
+	const ReconstructionOptions& options  = {},
+	const Progress&              progress = {});
 
 } // namespace curvature_lines

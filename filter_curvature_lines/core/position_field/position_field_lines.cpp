@@ -191,12 +191,13 @@ std::vector<SurfaceSample> projectedPoints(
 	const SurfaceCurves&      curves,
 	const std::vector<Index>& first,
 	const Scaffold&           scaffold,
-	const PointCloud&         cloud,
+	const CloudIndex&         index,
 	const CurvatureField&     curvature)
 {
-	const TriangleMesh&        mesh = scaffold.mesh;
+	const PointCloud&          cloud  = index.cloud();
+	const NeighborSearch&      search = index.search();
+	const TriangleMesh&        mesh   = scaffold.mesh;
 	std::vector<SurfaceSample> samples(first.back());
-	const NeighborSearch       search(cloud.positions);
 	parallelFor(mesh.edgeCount(), {}, [&](Index e) {
 		const Vector3d side = sideOf(mesh, e);
 		for (std::size_t p = 0; p < curves.points[e].size(); ++p) {
@@ -263,7 +264,7 @@ LineNetwork linesOf(
 	const SurfaceCurves&  curves,
 	const Scaffold&       scaffold,
 	const CrossField&     field,
-	const PointCloud&     cloud,
+	const CloudIndex&     index,
 	const CurvatureField& curvature)
 {
 	const std::vector<Index>       first = firstPoints(curves);
@@ -288,7 +289,7 @@ LineNetwork linesOf(
 		return endAt(static_cast<Index>(e), scaffold, field);
 	};
 	return untangled(
-		networkOf(chains, projectedPoints(curves, first, scaffold, cloud, curvature), endOf));
+		networkOf(chains, projectedPoints(curves, first, scaffold, index, curvature), endOf));
 }
 
 } // namespace curvature_lines

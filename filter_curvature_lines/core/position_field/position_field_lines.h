@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
 #include "line_network.h"
 #include "scaffold.h"
 #include "surface_curves.h"
@@ -19,7 +20,7 @@ LineNetwork linesOf(
 	const SurfaceCurves&  curves,
 	const Scaffold&       scaffold,
 	const CrossField&     field,
-	const PointCloud&     cloud,
+	const CloudIndex&     index,
 	const CurvatureField& curvature);
 
 } // namespace curvature_lines

@@ -72,13 +72,14 @@ FieldMesh meshOfTargetSize(
 }
 
 void projectVertices(
-	const PointCloud&        cloud,
+	const CloudIndex&        index,
 	const CurvatureField&    curvature,
 	const std::vector<char>& fixed,
 	PolygonMesh&             mesh,
 	const Progress&          progress)
 {
-	const NeighborSearch search(cloud.positions);
+	const PointCloud&     cloud  = index.cloud();
+	const NeighborSearch& search = index.search();
 	parallelFor(mesh.vertexCount(), progress, [&](Index v) {
 		if (fixed[v])
 			return;
@@ -94,7 +95,7 @@ void projectVertices(
 } // namespace
 
 PositionFieldMeshResult buildPositionFieldMesh(
-	const PointCloud&               cloud,
+	const CloudIndex&               index,
 	const CurvatureField&           curvature,
 	const std::vector<FeatureLine>& creases,
 	const PositionFieldMeshOptions& options,
@@ -106,8 +107,9 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	forScaffold.noise                   = options.noise;
 	forScaffold.closedRim               = options.mesh.closeHoles ? longestClosedHole : 0.0;
 	// A front over points that keep their noise folds, and lines on it turn back and cross.
-	const PointCloud fitted = onFittedSurface(cloud, curvature);
-	Scaffold         scaffold =
+	const CloudIndex fitted =
+		curvature.height.size() > 0 ? onFittedSurface(index.cloud(), curvature) : index;
+	Scaffold scaffold =
 		buildScaffold(fitted, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
 	const TriangleMesh& mesh = scaffold.mesh;
 	result.scaffoldVertices  = mesh.vertexCount();
@@ -120,7 +122,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 
 	std::vector<Rim> rims  = findRims(mesh);
 	DirectionGuide   guide = directionGuide(scaffold, curvature);
-	fitRims(rims, fitted, guide.normals, options.noise, scaffold);
+	fitRims(rims, fitted.cloud(), guide.normals, options.noise, scaffold);
 	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
 	const CrossField       field     = smoothCrossField(mesh, guide);
 	result.singularTriangles         = field.singularTriangles();
@@ -140,7 +142,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	result.droppedComponents += meshed.arrangement.lostComponents;
 	progress.report(0.9);
 	if (options.keepLines) {
-		result.lines           = linesOf(meshed.curves, scaffold, field, cloud, curvature);
+		result.lines           = linesOf(meshed.curves, scaffold, field, index, curvature);
 		result.lines.crossings = result.crossings;
 	}
 
@@ -149,7 +151,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	if (options.mesh.splitConcave)
 		result.mesh = withConvexFaces(result.mesh);
 	projectVertices(
-		cloud, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
+		index, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
 	if (options.mesh.triangulate)
 		result.mesh = triangulated(result.mesh);
 	result.topology = topologyOf(result.mesh);

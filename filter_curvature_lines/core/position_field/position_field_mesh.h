@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
 #include "line_network.h"
 #include "mesh_finishing.h"
 #include "position_field.h"
@@ -32,7 +33,7 @@ struct PositionFieldMeshResult : FinishedMesh {
 // The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted
 // around them, if the field knows their heights; else the cloud is clean.
 PositionFieldMeshResult buildPositionFieldMesh(
-	const PointCloud&               cloud,
+	const CloudIndex&               index,
 	const CurvatureField&           curvature,
 	const std::vector<FeatureLine>& creases  = {},
 	const PositionFieldMeshOptions& options  = {},

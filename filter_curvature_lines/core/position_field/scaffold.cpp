@@ -15,7 +15,6 @@
 #include "neighborhoods.h"
 #include "polygon_mesh.h"
 #include "quantile.h"
-#include "shuffled_order.h"
 #include "surface_anchors.h"
 
 namespace curvature_lines {
@@ -440,27 +439,20 @@ bool Scaffold::hasCreases() const
 }
 
 Scaffold buildScaffold(
-	const PointCloud&               cloud,
+	const CloudIndex&               index,
 	const std::vector<FeatureLine>& creases,
 	const ScaffoldOptions&          options,
 	const Progress&                 progress)
 {
-	if (cloud.size() < 4)
+	if (index.size() < 4)
 		return {};
-	const std::vector<Index> order = shuffledOrder(cloud.positions);
-	PointCloud               shuffled;
-	shuffled.positions.resize(3, cloud.size());
-	shuffled.normals.resize(3, cloud.size());
-	for (Index k = 0; k < cloud.size(); ++k) {
-		shuffled.positions.col(k) = cloud.positions.col(order[k]);
-		shuffled.normals.col(k)   = cloud.normals.col(order[k]);
-	}
-	const PointSample sample(std::move(shuffled));
-	const double      spacing = spacingOf(sample);
-	const double      cell =
+	const std::vector<Index>& order = index.shuffled();
+	const PointSample         sample(columnsOf(index.cloud(), order), index.shuffledSearch());
+	const double              spacing = spacingOf(sample);
+	const double              cell =
         options.targetVertices > 0.0
-				 ? spacing / poissonSpacing * std::sqrt(cloud.size() / options.targetVertices)
-				 : 0.0;
+						 ? spacing / poissonSpacing * std::sqrt(index.size() / options.targetVertices)
+						 : 0.0;
 
 	const double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
 	const Attempts tries{sample, order, cell, options};

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
 #include "progress.h"
 #include "triangle_mesh.h"
 
@@ -49,7 +50,7 @@ struct Scaffold {
 // Vertices are points of the cloud, then samples of the creases and centres of filled holes. The
 // orientation is that of the normals. Same result for any order of the points.
 Scaffold buildScaffold(
-	const PointCloud&               cloud,
+	const CloudIndex&               index,
 	const std::vector<FeatureLine>& creases  = {},
 	const ScaffoldOptions&          options  = {},
 	const Progress&                 progress = {});

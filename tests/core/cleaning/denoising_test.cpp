@@ -1,5 +1,7 @@
-// The choice between the two ways of denoising, and what each asks for.
+// Both ways of denoising, and what each asks for.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
@@ -7,8 +9,6 @@
 
 namespace curvature_lines::test {
 namespace {
-
-using Method = DenoisingOptions::Method;
 
 PointCloud noisyTorus()
 {
@@ -20,22 +20,6 @@ PointCloud noisyTorus()
 	return prepareCloud(sample.positions, sample.normals).cloud;
 }
 
-struct Correction {
-	const PointCloud           cloud;
-	const NeighborSearch       search{cloud.positions};
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(cloud, search);
-	int                        calls   = 0;
-
-	explicit Correction(const PointCloud& cloud) : cloud(cloud) {}
-	NormalCorrection counted()
-	{
-		return [this](const Progress&) {
-			++calls;
-			return CorrectedNormals{cloud.normals, search, minimum};
-		};
-	}
-};
-
 void expectMoves(const PointCloud& cloud, const DenoisingResult& result)
 {
 	const Eigen::VectorXd moves = (result.positions - cloud.positions).colwise().norm();
@@ -44,34 +28,33 @@ void expectMoves(const PointCloud& cloud, const DenoisingResult& result)
 	EXPECT_DOUBLE_EQ(result.maxMove, moves.maxCoeff());
 }
 
-TEST(Denoising, RobustNeedsNoCurvature)
+TEST(Denoising, ProjectionIsTheRobustMethodAndMeasuresItsMoves)
 {
-	Correction            correction(noisyTorus());
-	const DenoisingResult result = denoise(correction.cloud, correction.counted());
-	EXPECT_EQ(correction.calls, 0);
-	const RobustDenoisingResult direct = denoiseRobustly(correction.cloud);
+	const PointCloud            cloud  = noisyTorus();
+	const DenoisingResult       result = denoiseByProjection(cloud);
+	const RobustDenoisingResult direct = denoiseRobustly(cloud);
 	EXPECT_EQ(result.positions, direct.positions);
 	EXPECT_EQ(result.normals, direct.normals);
 	EXPECT_EQ(result.pointDeviation, direct.pointDeviation);
 	EXPECT_EQ(result.radius, direct.radius);
 	EXPECT_EQ(result.iterations, 0);
-	expectMoves(correction.cloud, result);
+	expectMoves(cloud, result);
 }
 
-TEST(Denoising, PaperMovesByCorrectedNormals)
+TEST(Denoising, PublishedMethodMovesByTheNormalsItIsGiven)
 {
-	Correction       correction(noisyTorus());
-	DenoisingOptions options;
-	options.method               = Method::Paper;
-	options.paper.iterations     = 5;
-	PointCloud wrong             = correction.cloud;
-	wrong.normals                = -wrong.normals;
-	const DenoisingResult result = denoise(wrong, correction.counted(), options);
-	EXPECT_EQ(correction.calls, 1);
+	const PointCloud       cloud = noisyTorus();
+	EnergyDenoisingOptions options;
+	options.iterations                 = 5;
+	PointCloud wrong                   = cloud;
+	wrong.normals                      = -wrong.normals;
+	const CloudIndex            index  = CloudIndex(cloud).withNormals(wrong.normals);
+	const DenoisingResult       result = denoiseAsPublished(index, cloud.normals, options);
+	const CloudIndex            right(cloud);
 	const EnergyDenoisingResult direct =
-		denoiseByEnergy(correction.cloud, correction.search, correction.minimum, options.paper);
+		denoiseByEnergy(cloud, right.search(), right.minimum(), options);
 	EXPECT_EQ(result.positions, direct.positions);
-	EXPECT_EQ(result.normals, correction.cloud.normals);
+	EXPECT_EQ(result.normals, cloud.normals);
 	EXPECT_EQ(result.iterations, direct.iterations);
 	EXPECT_LT(result.finalEnergy, result.initialEnergy);
 	EXPECT_EQ(result.pointDeviation, 0.0);
@@ -80,38 +63,36 @@ TEST(Denoising, PaperMovesByCorrectedNormals)
 
 TEST(Denoising, ProgressReachesTheEndWithEither)
 {
-	for (const Method method : {Method::Robust, Method::Paper}) {
-		Correction       correction(noisyTorus());
-		DenoisingOptions options;
-		options.method           = method;
-		options.paper.iterations = 5;
-		double last              = 0.0;
-		denoise(
-			correction.cloud,
-			correction.counted(),
-			options,
-			Progress([&](double fraction, const char*) {
-				EXPECT_GE(fraction, last - 1e-12);
-				last = fraction;
-				return true;
-			}));
+	const PointCloud       cloud = noisyTorus();
+	EnergyDenoisingOptions published;
+	published.iterations                                 = 5;
+	const std::function<void(const Progress&)> methods[] = {
+		[&](const Progress& progress) { denoiseByProjection(cloud, {}, progress); },
+		[&](const Progress& progress) {
+			denoiseAsPublished(cloud, cloud.normals, published, progress);
+		}};
+	for (const auto& method : methods) {
+		double last = 0.0;
+		method(Progress([&](double fraction, const char*) {
+			EXPECT_GE(fraction, last - 1e-12);
+			last = fraction;
+			return true;
+		}));
 		EXPECT_DOUBLE_EQ(last, 1.0);
 		EXPECT_THROW(
-			denoise(
-				correction.cloud,
-				correction.counted(),
-				options,
-				Progress([](double fraction, const char*) { return fraction < 0.6; })),
+			method(Progress([](double fraction, const char*) { return fraction < 0.6; })),
 			Cancelled);
 	}
 }
 
 TEST(Denoising, NoPointsDoNotMove)
 {
-	const DenoisingResult result =
-		denoise({Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0)}, NormalCorrection());
-	EXPECT_EQ(result.positions.cols(), 0);
-	EXPECT_EQ(result.maxMove, 0.0);
+	const PointCloud none{Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0)};
+	for (const DenoisingResult& result :
+	     {denoiseByProjection(none), denoiseAsPublished(none, none.normals)}) {
+		EXPECT_EQ(result.positions.cols(), 0);
+		EXPECT_EQ(result.maxMove, 0.0);
+	}
 }
 
 } // namespace

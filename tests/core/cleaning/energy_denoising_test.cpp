@@ -71,8 +71,7 @@ PointCloud withEstimatedNormals(PointCloud cloud)
 		                       .col(0);
 		cloud.normals.col(i) = n.dot(cloud.normals.col(i)) < 0.0 ? Vector3d(-n) : n;
 	}
-	cloud.normals =
-		robustCurvature(cloud, search, minimumNeighborhoods(cloud, search)).correctedNormals;
+	cloud.normals = robustCurvature(cloud).correctedNormals;
 	return cloud;
 }
 

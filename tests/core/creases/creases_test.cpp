@@ -45,7 +45,7 @@ Found find(PreparedCloud prepared, const CreaseOptions& options = {})
 	found.prepared = std::move(prepared);
 	const NeighborSearch search(found.prepared.cloud.positions);
 	found.minimum = minimumNeighborhoods(found.prepared.cloud, search);
-	found.creases = findCreases(found.prepared.cloud, found.minimum, options);
+	found.creases = findCreases(found.prepared.cloud, options);
 	return found;
 }
 
@@ -449,7 +449,7 @@ TEST(Creases, DegenerateClouds)
 		const PointCloud     cloud{positions, normals};
 		const NeighborSearch search(cloud.positions);
 		const auto           minimum = minimumNeighborhoods(cloud, search);
-		return findCreases(cloud, minimum).curves.empty();
+		return findCreases(cloud).curves.empty();
 	};
 	EXPECT_TRUE(none(Matrix3Xd(3, 0), Matrix3Xd(3, 0)));
 	const Matrix3Xd up = Vector3d::UnitZ().replicate(1, 100);

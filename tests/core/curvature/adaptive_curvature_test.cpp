@@ -395,7 +395,7 @@ void expectSoundOn(const PointCloud& cloud)
 {
 	const NeighborSearch       search(cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(cloud, search);
-	expectSound(estimateCurvature(cloud, search, minimum));
+	expectSound(estimateCurvature(cloud));
 }
 
 TEST(AdaptiveCurvature, DegenerateClouds)
@@ -460,10 +460,10 @@ TEST(AdaptiveCurvature, CanBeCancelled)
         last = fraction;
         return true;
     });
-	estimateCurvature(cloud, search, minimum, {}, watch);
+	estimateCurvature(cloud, {}, watch);
 	EXPECT_DOUBLE_EQ(last, 1.0);
 	const Progress cancel([](double fraction, const char*) { return fraction < 0.4; });
-	EXPECT_THROW(estimateCurvature(cloud, search, minimum, {}, cancel), Cancelled);
+	EXPECT_THROW(estimateCurvature(cloud, {}, cancel), Cancelled);
 }
 
 } // namespace

@@ -457,7 +457,7 @@ void expectSound(const PointCloud& cloud)
 	for (const bool gate : {true, false}) {
 		RobustCurvatureOptions options;
 		options.featureGate    = gate;
-		const CurvatureField f = robustCurvature(cloud, search, minimum, options);
+		const CurvatureField f = robustCurvature(cloud, options);
 		EXPECT_TRUE(f.k1.allFinite() && f.k2.allFinite() && f.error.allFinite());
 		EXPECT_TRUE(f.d1.allFinite() && f.d2.allFinite() && f.correctedNormals.allFinite());
 		EXPECT_TRUE(f.radius.allFinite() && f.confidence.allFinite());
@@ -507,7 +507,7 @@ TEST(RobustCurvature, DegenerateCloudsGiveFiniteFrames)
 	expectSound(cloud);
 	const NeighborSearch       search(cloud.positions);
 	const MinimumNeighborhoods minimum = minimumNeighborhoods(cloud, search);
-	EXPECT_EQ(robustCurvature(cloud, search, minimum).status[0], PointStatus::Isolated);
+	EXPECT_EQ(robustCurvature(cloud).status[0], PointStatus::Isolated);
 }
 
 TEST(Scalars, ShapeIndexAndCurvedness)

@@ -14,12 +14,10 @@ namespace {
 // The cloud has to be in the order it is measured with.
 std::vector<double> spacingOf(const Eigen::Matrix3Xd& positions)
 {
-	const SpatialOrder order(positions);
-	const PointCloud   cloud{
-        order.arrange(positions), Eigen::Vector3d::UnitZ().replicate(1, positions.cols())};
-	const std::vector<double> arranged =
-		localSpacing(cloud, NeighborSearch(cloud.positions), SpatialOrder(cloud.positions));
-	std::vector<double> spacing(arranged.size());
+	const SpatialOrder        order(positions);
+	const Eigen::Matrix3Xd    inOrder  = order.arrange(positions);
+	const std::vector<double> arranged = localSpacing(inOrder, NeighborSearch(inOrder), order);
+	std::vector<double>       spacing(arranged.size());
 	for (std::size_t k = 0; k < arranged.size(); ++k)
 		spacing[order.source[k]] = arranged[k];
 	return spacing;

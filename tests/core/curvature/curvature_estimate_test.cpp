@@ -37,12 +37,11 @@ double relativeError(const Eigen::VectorXd& found, const Eigen::VectorXd& truth)
 TEST(CurvatureEstimate, BothScalesFindTheCurvatureOfATorus)
 {
 	const test::ExactCloud torus = exact("torus", 3000);
-	const NeighborSearch   search(torus.cloud.positions);
 	CurvatureOptions       options;
 	std::vector<double>    radii;
 	for (const ScaleMode mode : {ScaleMode::Adaptive, ScaleMode::Paper}) {
 		options.scaleMode          = mode;
-		const CurvatureField field = estimateCurvature(torus.cloud, search, torus.minimum, options);
+		const CurvatureField field = estimateCurvature(torus.cloud, options);
 		EXPECT_LT(relativeError(field.k1, torus.field.k1), 0.02);
 		EXPECT_LT(relativeError(field.k2, torus.field.k2), 0.06);
 		radii.push_back(field.radius.mean());

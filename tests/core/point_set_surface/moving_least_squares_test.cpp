@@ -29,7 +29,7 @@ struct Surface {
 
 	explicit Surface(const PointCloud& points) :
 			cloud(inOrder(points)), search(cloud.positions),
-			spacing(localSpacing(cloud, search, SpatialOrder(cloud.positions))),
+			spacing(localSpacing(cloud.positions, search, SpatialOrder(cloud.positions))),
 			control{cloud, search, spacing}, surface(control)
 	{
 	}

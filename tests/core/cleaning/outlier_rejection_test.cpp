@@ -179,7 +179,8 @@ Matrix3Xd twoSheets(int points, double gap, double noise)
 // The distance between the sheets is two spacings; a voter spans seven.
 TEST(RobustVote, ThinSheetsStay)
 {
-	const OutlierResult result = rejectByRobustVotes(twoSheets(4000, 0.03, 0.001), 3.5, 3);
+	const OutlierResult result =
+		rejectByRobustVotes(PointCloud{twoSheets(4000, 0.03, 0.001), {}}, 3.5, 3);
 	EXPECT_LE(std::count(result.outlier.begin(), result.outlier.end(), char(1)), 16);
 	EXPECT_NEAR(result.heightDeviation, 0.001, 0.0001);
 }
@@ -197,7 +198,7 @@ TEST(RobustVote, DenseClustersDoNotOutvoteTheSurface)
 		for (int k = 0; k < 100; ++k)
 			positions.col(4000 + 100 * c + k) = middle + 0.0015 * random.normal3();
 	}
-	const OutlierResult result = rejectByRobustVotes(positions, 3.5, 3);
+	const OutlierResult result = rejectByRobustVotes(PointCloud{positions, {}}, 3.5, 3);
 	EXPECT_GE(std::count(result.outlier.begin() + 4000, result.outlier.end(), char(1)), 290);
 	EXPECT_LE(std::count(result.outlier.begin(), result.outlier.begin() + 4000, char(1)), 12);
 }
@@ -220,7 +221,7 @@ TEST(RobustVote, NarrowTipsStay)
 		positions.col(i++) = Vector3d(x, y, thorn(r));
 	}
 	ASSERT_GT(tip, 60);
-	const OutlierResult result = rejectByRobustVotes(positions, 3.5, 3);
+	const OutlierResult result = rejectByRobustVotes(PointCloud{positions, {}}, 3.5, 3);
 	EXPECT_LE(std::count(result.outlier.begin(), result.outlier.end(), char(1)), 25);
 }
 

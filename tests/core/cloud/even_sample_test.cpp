@@ -100,7 +100,9 @@ TEST(EvenSample, DoesNotFavourNoise)
 	std::iota(all.begin(), all.end(), 0);
 	EXPECT_LT(deviation(all), 0.02);
 	EXPECT_NEAR(
-		deviation(evenSample({noisy.positions, noisy.normals}, 8000)) / deviation(all), 1.0, 0.05);
+		deviation(evenSample(PointCloud{noisy.positions, noisy.normals}, 8000)) / deviation(all),
+		1.0,
+		0.05);
 }
 
 } // namespace

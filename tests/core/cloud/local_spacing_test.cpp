@@ -39,8 +39,9 @@ TEST(LocalSpacing, IsTheSideOfTheSquareThatHoldsOnePoint)
 		const std::vector<double> spacing   = spacingOf(positions);
 		for (int i = 0; i < points; ++i) {
 			const bool inside = positions.col(i).cwiseAbs().maxCoeff() < 0.3;
-			if (inside)
+			if (inside) {
 				EXPECT_NEAR(spacing[i] * std::sqrt(points), 1.0, 0.15);
+			}
 		}
 	}
 }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "shuffled_order.h"
 #include "spatial_order.h"
 
 namespace curvature_lines {

@@ -84,8 +84,9 @@ TEST(CreasePoints, ConcaveEdgesHaveNegativeAngles)
 		// the block's concave edge is the line x = y = 0
 		const bool inside = p.position.head<2>().norm() < 0.02 && std::abs(p.position.z()) < 0.2;
 		concave += p.angle < 0.0;
-		if (inside)
+		if (inside) {
 			EXPECT_LT(p.angle, 0.0);
+		}
 	}
 	EXPECT_GT(concave, 50);
 	EXPECT_LT(concave, static_cast<int>(found.points.size()) / 8);

@@ -150,10 +150,12 @@ TEST(PositionField, PinnedVerticesHaveWholeNumbers)
 	expectSound(plane, positions);
 	EXPECT_EQ(positions.lineEnds, 0);
 	for (Index v = 0; v < plane.surface.size(); ++v) {
-		if (pins.fixed[0][v])
+		if (pins.fixed[0][v]) {
 			EXPECT_EQ(positions.phase[v].real(), std::round(positions.phase[v].real()));
-		if (pins.fixed[1][v])
+		}
+		if (pins.fixed[1][v]) {
 			EXPECT_EQ(positions.phase[v].imag(), std::round(positions.phase[v].imag()));
+		}
 	}
 	// From side to side six lines instead of 6.2, everywhere alike.
 	EXPECT_LT(unevenness(plane, positions, constantDensity(plane, 6.0, 6.0)), 1e-3);

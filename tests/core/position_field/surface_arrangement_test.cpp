@@ -23,7 +23,7 @@ TriangleMesh scaffoldOf(const std::string& surface, int points = 1500)
 	request.points                    = points;
 	request.seed                      = 5;
 	const samples::SampleCloud sample = samples::generate(request);
-	return buildScaffold({sample.positions, sample.normals}).mesh;
+	return buildScaffold(PointCloud{sample.positions, sample.normals}).mesh;
 }
 
 SurfaceFeatures noFeatures(const TriangleMesh& mesh)

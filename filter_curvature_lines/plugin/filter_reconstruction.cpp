@@ -1,6 +1,7 @@
 // Surface Reconstruction: Curvature-Aligned Quads: core/reconstruction (A09 fig. 1) on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <utility>
 
 #include "filter_table.h"
 #include "help_text.h"
@@ -188,9 +189,9 @@ FilterResults apply(const FilterContext& context, const Options& options)
 		points = readOrientedPoints(source);
 	}
 
-	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
+	PreparedCloud              prepared = prepareCloud(points.positions, points.normals);
 	const ReconstructionResult result =
-		reconstruct(prepared.cloud, pipeline, context.progress.sub(0.1, 1.0, ""));
+		reconstruct(std::move(prepared.cloud), pipeline, context.progress.sub(0.1, 1.0, ""));
 	if (result.mesh.mesh.faceCount() == 0)
 		throw MLException(
 			"no face was found: the cloud is too sparse for the chosen density, or (Traced Lines) "

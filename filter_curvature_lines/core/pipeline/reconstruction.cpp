@@ -12,7 +12,7 @@ namespace {
 constexpr double leastSample = 20000.0; // points that thinning leaves, at least
 
 NoisyPoints inliersOf(
-	const CloudIndex&            given,
+	CloudIndex                   given,
 	const ReconstructionOptions& options,
 	StageClock&                  clock,
 	const Progress&              progress)
@@ -40,13 +40,13 @@ ReconstructionResult resultOf(NoisyPoints noisy, CleanSurface surface)
 
 } // namespace
 
-ReconstructionResult adaptiveRecipe(
-	const CloudIndex& given, const ReconstructionOptions& options, const Progress& progress)
+ReconstructionResult
+adaptiveRecipe(CloudIndex given, const ReconstructionOptions& options, const Progress& progress)
 {
 	StageClock            clock;
 	const CleaningOptions cleaning{options.denoise, options.curvature, options.denoising};
 
-	NoisyPoints  noisy  = inliersOf(given, options, clock, progress.sub(0.0, 0.2, ""));
+	NoisyPoints  noisy  = inliersOf(std::move(given), options, clock, progress.sub(0.0, 0.2, ""));
 	const double useful = options.pointsPerVertex * options.tracing.targetVertices;
 	if (useful > 0.0 && noisy.index.size() > std::max(useful, leastSample)) {
 		noisy = thinned(
@@ -60,6 +60,7 @@ ReconstructionResult adaptiveRecipe(
 	CleanSurface surface =
 		published ? denoiseThenEstimate(noisy, cleaning, clock, progress.sub(0.2, 0.65, ""))
 				  : estimateThenDenoise(noisy, cleaning, clock, progress.sub(0.2, 0.65, ""));
+	noisy.index             = {}; // not needed any more
 	UmbilicRegions umbilics = findUmbilics(
 		surface.index.cloud(), surface.field, surface.index.minimum(), options.umbilics);
 	clock.book("umbilics");
@@ -78,8 +79,8 @@ ReconstructionResult adaptiveRecipe(
 	return result;
 }
 
-ReconstructionResult publishedRecipe(
-	const CloudIndex& given, const ReconstructionOptions& options, const Progress& progress)
+ReconstructionResult
+publishedRecipe(CloudIndex given, const ReconstructionOptions& options, const Progress& progress)
 {
 	StageClock            clock;
 	const CleaningOptions cleaning{options.denoise, options.curvature, options.denoising};
@@ -87,9 +88,10 @@ ReconstructionResult publishedRecipe(
         options.smoothDirections, options.directions, options.umbilics, options.tracing};
 	following.umbilics.smoothed = options.smoothDirections;
 
-	NoisyPoints  noisy   = inliersOf(given, options, clock, progress.sub(0.0, 0.2, ""));
+	NoisyPoints  noisy   = inliersOf(std::move(given), options, clock, progress.sub(0.0, 0.2, ""));
 	CleanSurface surface = denoiseThenEstimate(noisy, cleaning, clock, progress.sub(0.2, 0.65, ""));
-	TracedLines  traced  = followDirections(
+	noisy.index          = {}; // not needed any more
+	TracedLines traced   = followDirections(
         surface.index, std::move(surface.field), following, clock, progress.sub(0.65, 0.93, ""));
 	QuadMeshResult mesh = buildQuadMesh(
 		surface.index.cloud(),
@@ -109,11 +111,11 @@ ReconstructionResult publishedRecipe(
 }
 
 ReconstructionResult
-reconstruct(const CloudIndex& given, const ReconstructionOptions& options, const Progress& progress)
+reconstruct(CloudIndex given, const ReconstructionOptions& options, const Progress& progress)
 {
 	return options.method == ReconstructionOptions::Method::PositionField
-	           ? adaptiveRecipe(given, options, progress)
-	           : publishedRecipe(given, options, progress);
+	           ? adaptiveRecipe(std::move(given), options, progress)
+	           : publishedRecipe(std::move(given), options, progress);
 }
 
 } // namespace curvature_lines

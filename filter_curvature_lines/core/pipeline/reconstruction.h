@@ -57,24 +57,18 @@ struct ReconstructionResult {
 };
 
 // Outliers out, dense clouds thinned, curvature of the noisy points, denoising, creases, and the mesh of a position
-// field on the cleaned points. `given`: prepared (unit frame). The mesh may come out empty (too sparse a cloud); that
-// is for the caller to report.
+// field on the cleaned points. `given`: prepared (unit frame); let go as soon as it is not needed any more. The mesh
+// may come out empty (too sparse a cloud); that is for the caller to report.
 ReconstructionResult adaptiveRecipe(
-	const CloudIndex&            given,
-	const ReconstructionOptions& options  = {},
-	const Progress&              progress = {});
+	CloudIndex given, const ReconstructionOptions& options = {}, const Progress& progress = {});
 
 // A09 fig. 1: outliers out, denoising, curvature of the denoised points, directions smoothed, lines traced, faces
 // between their crossings. The stages' own options say whether each of them is the published one.
 ReconstructionResult publishedRecipe(
-	const CloudIndex&            given,
-	const ReconstructionOptions& options  = {},
-	const Progress&              progress = {});
+	CloudIndex given, const ReconstructionOptions& options = {}, const Progress& progress = {});
 
 // The one that options.method asks for.
 ReconstructionResult reconstruct(
-	const CloudIndex&            given,
-	const ReconstructionOptions& options  = {},
-	const Progress&              progress = {});
+	CloudIndex given, const ReconstructionOptions& options = {}, const Progress& progress = {});
 
 } // namespace curvature_lines

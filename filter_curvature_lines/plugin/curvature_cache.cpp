@@ -2,10 +2,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature_cache.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "curvature_estimate.h"
+#include "curvature_field.h"
+#include "layer_conversion.h"
 #include "layer_curvature.h"
-
+#include "point_cloud.h"
+#include "progress.h"
 #include "raw_curvatures.h"
 
 namespace curvature_lines {

@@ -12,9 +12,14 @@
 
 #include <common/ml_document/mesh_model.h>
 
-#include "layer_conversion.h"
-
+#include "cloud_index.h"
 #include "curvature_estimate.h"
+#include "curvature_field.h"
+#include "layer_conversion.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

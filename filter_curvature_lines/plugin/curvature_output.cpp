@@ -4,9 +4,16 @@
 
 #include <map>
 
-#include "layer_curvature.h"
+#include <Eigen/Core>
 
 #include "curvature_colors.h"
+#include "filter_results.h"
+#include "layer_conversion.h"
+#include "layer_curvature.h"
+#include "neighborhoods.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
+#include "raw_curvatures.h"
 
 namespace curvature_lines {
 

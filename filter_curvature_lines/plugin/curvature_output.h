@@ -4,9 +4,9 @@
 
 #include "filter_results.h"
 #include "layer_conversion.h"
-#include "parameter_table.h"
-
 #include "neighborhoods.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
 #include "raw_curvatures.h"
 
 namespace curvature_lines {

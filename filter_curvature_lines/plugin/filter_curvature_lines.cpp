@@ -3,8 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filter_curvature_lines.h"
 
+#include <exception>
+#include <map>
+#include <new>
+#include <string>
+
+#include "filter_results.h"
 #include "filter_table.h"
 #include "host_progress.h"
+#include "progress.h"
 
 using namespace curvature_lines;
 

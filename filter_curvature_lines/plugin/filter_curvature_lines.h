@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+#include <string>
+
 #include <common/plugins/interfaces/filter_plugin.h>
 
 #include "curvature_cache.h"

@@ -1,9 +1,13 @@
 // Denoise Point Cloud by Robust Curvature: core/denoising on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_cache.h"
+#include "denoising.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
-
-#include "denoising.h"
+#include "layer_conversion.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

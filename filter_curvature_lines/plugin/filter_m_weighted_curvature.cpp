@@ -1,11 +1,17 @@
 // M-Weighted Curvature (Euler Least Squares): core/m_weighted_curvature on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_field.h"
 #include "curvature_output.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
-#include "shared_parameters.h"
-
+#include "layer_conversion.h"
 #include "m_weighted_curvature.h"
+#include "neighborhoods.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
+#include "raw_curvatures.h"
+#include "shared_parameters.h"
 #include "umbilics.h"
 
 namespace curvature_lines {

@@ -2,11 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include <Eigen/Core>
+
+#include "control_neighborhood.h"
+#include "curvature_driven_projection.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
 #include "host_types.h"
-
-#include "curvature_driven_projection.h"
+#include "layer_conversion.h"
+#include "neighborhoods.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
 
 namespace curvature_lines {
 

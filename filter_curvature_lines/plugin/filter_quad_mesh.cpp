@@ -1,12 +1,19 @@
 // Build Curvature-Aligned Quad Mesh: core/quad_mesh on the layer of lines.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_conversion.h"
+#include "line_network.h"
+#include "mesh_finishing.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
 #include "polygon_layer.h"
+#include "polygon_mesh.h"
 #include "polyline_layer.h"
-#include "shared_parameters.h"
-
 #include "quad_mesh.h"
+#include "shared_parameters.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

@@ -1,18 +1,33 @@
 // Ray-Trace Point-Set Surface: core/surface_picture of a layer, into a PNG file.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include <QDir>
 #include <QFileInfo>
 #include <QImage>
 #include <QSaveFile>
 
+#include "control_neighborhood.h"
+#include "curvature_colors.h"
+#include "curvature_driven_projection.h"
+#include "curvature_field.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
 #include "host_types.h"
-
-#include "curvature_colors.h"
-#include "curvature_driven_projection.h"
+#include "layer_conversion.h"
 #include "m_weighted_curvature.h"
 #include "moving_least_squares.h"
+#include "neighborhoods.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
+#include "ray_tracing.h"
 #include "spatial_order.h"
 #include "surface_picture.h"
 

@@ -3,15 +3,22 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/Core>
+
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_conversion.h"
 #include "layer_curvature.h"
-#include "polygon_layer.h"
-#include "polyline_layer.h"
-#include "shared_parameters.h"
-
 #include "normal_estimation.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
+#include "polygon_layer.h"
+#include "polygon_mesh.h"
+#include "polyline_layer.h"
+#include "raw_curvatures.h"
 #include "reconstruction.h"
+#include "shared_parameters.h"
 
 namespace curvature_lines {
 

@@ -1,10 +1,15 @@
 // Robust Curvature (M-Estimation): core/robust_curvature on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "curvature_cache.h"
 #include "curvature_output.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_conversion.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
+#include "raw_curvatures.h"
 #include "shared_parameters.h"
-
 #include "umbilics.h"
 
 namespace curvature_lines {

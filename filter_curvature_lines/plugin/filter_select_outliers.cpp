@@ -1,9 +1,16 @@
 // Select Outliers by Robust Curvature: core/outlier_rejection on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstddef>
+#include <vector>
+
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
-
+#include "layer_conversion.h"
 #include "outlier_rejection.h"
+#include "outlier_result.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -1,11 +1,18 @@
 // Extract Sharp Feature Lines: core/creases on a denoised copy of a layer's points.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <utility>
 
+#include "cloud_index.h"
+#include "crease_curves.h"
+#include "creases.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_conversion.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
 #include "polyline_layer.h"
-
 #include "robust_denoising.h"
 
 namespace curvature_lines {

@@ -1,10 +1,16 @@
 // Smooth Principal Directions: core/direction_smoothing on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "curvature_cache.h"
+#include "curvature_field.h"
+#include "direction_smoothing.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_conversion.h"
 #include "layer_curvature.h"
-
-#include "direction_smoothing.h"
+#include "parameter_table.h"
 #include "umbilics.h"
 
 namespace curvature_lines {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filter_table.h"
 
+#include <vector>
+
 namespace curvature_lines {
 
 // Each in a file of its own, filter_*.cpp.

@@ -10,6 +10,7 @@
 #include "curvature_cache.h"
 #include "filter_results.h"
 #include "parameter_table.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -1,13 +1,23 @@
 // Trace Lines of Curvature: core/line_tracing on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <utility>
 
+#include "curvature_cache.h"
+#include "curvature_field.h"
+#include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "layer_conversion.h"
+#include "line_network.h"
+#include "line_tracing.h"
+#include "parameter_table.h"
+#include "point_cloud.h"
 #include "polyline_layer.h"
+#include "progress.h"
 #include "shared_parameters.h"
-
 #include "stages.h"
+#include "umbilics.h"
 
 namespace curvature_lines {
 

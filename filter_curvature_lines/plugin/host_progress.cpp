@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_progress.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
+
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+
+#include <Eigen/Core>
 
 #include <common/mlexception.h>
 #include <vcg/complex/algorithms/update/color.h>
 
 #include "host_types.h"
-
+#include "point_cloud.h"
 #include "raw_curvatures.h"
 
 namespace curvature_lines {

@@ -3,6 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include <common/ml_document/mesh_document.h>
 
 #include "point_cloud.h"

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layer_curvature.h"
 
+#include <Eigen/Core>
+
 #include "host_types.h"
+#include "layer_conversion.h"
+#include "point_cloud.h"
+#include "raw_curvatures.h"
 
 namespace curvature_lines {
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "layer_conversion.h"
+#include <Eigen/Core>
 
+#include "layer_conversion.h"
+#include "point_cloud.h"
 #include "raw_curvatures.h"
 
 namespace curvature_lines {

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Core>
+
 #include <common/mlexception.h>
 
 #include "host_types.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -5,6 +5,8 @@
 
 #include <type_traits>
 
+#include <Eigen/Core>
+
 #include <common/ml_document/mesh_document.h>
 #include <common/parameters/rich_parameter_list.h>
 

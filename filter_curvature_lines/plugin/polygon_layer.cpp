@@ -3,9 +3,13 @@
 #include "polygon_layer.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
+#include "filter_results.h"
 #include "host_types.h"
-
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "polygon_triangulation.h"
 
 namespace curvature_lines {

@@ -5,7 +5,7 @@
 #include <common/ml_document/mesh_document.h>
 
 #include "filter_results.h"
-
+#include "point_cloud.h"
 #include "polygon_mesh.h"
 
 namespace curvature_lines {

@@ -4,12 +4,20 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <common/mlexception.h>
 
+#include "crease_curves.h"
 #include "host_types.h"
-
 #include "line_chains.h"
+#include "line_network.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

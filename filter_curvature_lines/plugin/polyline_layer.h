@@ -5,8 +5,11 @@
 
 #include <common/ml_document/mesh_document.h>
 
+#include "crease_curves.h"
 #include "creases.h"
+#include "line_network.h"
 #include "line_tracing.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

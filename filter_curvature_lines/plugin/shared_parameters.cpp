@@ -2,6 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shared_parameters.h"
 
+#include "curvature_cache.h"
+#include "curvature_estimate.h"
+#include "mesh_finishing.h"
+#include "parameter_table.h"
+#include "robust_curvature.h"
+#include "umbilics.h"
+
 namespace curvature_lines {
 
 void scaleModeParameter(ParameterTable& table, ScaleMode& mode, bool advanced)

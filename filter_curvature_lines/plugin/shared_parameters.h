@@ -3,9 +3,9 @@
 #pragma once
 
 #include "curvature_cache.h"
-#include "parameter_table.h"
-
+#include "curvature_estimate.h"
 #include "mesh_finishing.h"
+#include "parameter_table.h"
 #include "umbilics.h"
 
 namespace curvature_lines {

@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_minimization.h"
 
+#include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <utility>
+
+#include <Eigen/Core>
 
 #include <LBFGS.h>
 #include <LBFGSB.h>
@@ -13,6 +18,9 @@
 // Only dlib's headers are used: the check that they match a compiled dlib would need that library.
 #define DLIB_TEST_FOR_ODR_VIOLATIONS_H_
 #include <dlib/optimization.h>
+
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

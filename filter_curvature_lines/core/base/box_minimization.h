@@ -5,6 +5,9 @@
 
 #include <functional>
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "progress.h"
 
 namespace curvature_lines {

@@ -6,13 +6,17 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <thread>
 #include <vector>
 
 #include <omp.h>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -5,6 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Core>
+
+#include "cloud_index.h"
+#include "energy_denoising.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "robust_denoising.h"
+
 namespace curvature_lines {
 
 namespace {

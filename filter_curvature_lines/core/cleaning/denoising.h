@@ -3,7 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+
+#include "cloud_index.h"
 #include "energy_denoising.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_denoising.h"
 
 namespace curvature_lines {

@@ -4,6 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "outlier_voter.h"
+#include "point_cloud.h"
+#include "surface_patch.h"
 
 namespace curvature_lines {
 

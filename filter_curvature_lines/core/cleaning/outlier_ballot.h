@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "outlier_voter.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

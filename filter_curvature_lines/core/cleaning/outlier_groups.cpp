@@ -4,8 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
-#include "spatial_order.h"
+#include <Eigen/Core>
+
+#include "neighborhoods.h"
+#include "outlier_ballot.h"
+#include "outlier_voter.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

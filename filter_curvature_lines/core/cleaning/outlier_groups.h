@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "outlier_ballot.h"
+#include "outlier_voter.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

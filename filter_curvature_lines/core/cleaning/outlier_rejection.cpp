@@ -2,6 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "outlier_rejection.h"
 
+#include <vector>
+
+#include "cloud_index.h"
+#include "curvature_field.h"
+#include "outlier_result.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "robust_curvature.h"
 #include "robust_outliers.h"
 
 namespace curvature_lines {

@@ -3,7 +3,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cloud_index.h"
+#include "curvature_field.h"
 #include "outlier_result.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_curvature.h"
 
 namespace curvature_lines {

@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include <Eigen/Dense>
+
+#include "point_cloud.h"
+#include "surface_patch.h"
 
 namespace curvature_lines {
 

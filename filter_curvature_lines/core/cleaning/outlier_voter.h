@@ -3,6 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "surface_patch.h"
 
 namespace curvature_lines {

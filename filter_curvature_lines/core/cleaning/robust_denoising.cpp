@@ -4,12 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "blended_surface.h"
+#include "cloud_index.h"
+#include "covering_patch.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "point_deviation.h"
+#include "progress.h"
 #include "quantile.h"
 
 namespace curvature_lines {

@@ -3,7 +3,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+
 #include "cloud_index.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

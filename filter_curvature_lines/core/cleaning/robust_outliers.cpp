@@ -4,9 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "cloud_index.h"
+#include "neighborhoods.h"
+#include "outlier_ballot.h"
 #include "outlier_groups.h"
+#include "outlier_result.h"
+#include "outlier_voter.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "quantile.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 

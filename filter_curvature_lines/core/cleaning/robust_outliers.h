@@ -5,6 +5,7 @@
 
 #include "cloud_index.h"
 #include "outlier_result.h"
+#include "point_cloud.h"
 #include "progress.h"
 
 namespace curvature_lines {

@@ -2,12 +2,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cloud_index.h"
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "gate_normals.h"
 #include "local_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 

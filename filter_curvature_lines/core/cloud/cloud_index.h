@@ -4,8 +4,13 @@
 #pragma once
 
 #include <memory>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "spatial_order.h"
 
 namespace curvature_lines {

@@ -5,6 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
+
+#include "cloud_index.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 

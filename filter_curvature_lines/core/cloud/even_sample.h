@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "cloud_index.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

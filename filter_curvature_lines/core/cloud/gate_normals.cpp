@@ -2,6 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gate_normals.h"
 
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+
 namespace curvature_lines {
 
 namespace {

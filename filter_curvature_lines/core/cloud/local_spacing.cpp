@@ -4,6 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 

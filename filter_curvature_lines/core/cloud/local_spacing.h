@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "neighborhoods.h"
+#include "point_cloud.h"
 #include "progress.h"
 #include "spatial_order.h"
 

@@ -5,10 +5,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <nanoflann.hpp>
 
+#include "box_minimization.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "quantile.h"
 
 namespace curvature_lines {

@@ -3,9 +3,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "members.h"
+#include "point_cloud.h"
 #include "progress.h"
 
 namespace curvature_lines {

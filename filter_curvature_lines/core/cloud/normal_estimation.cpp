@@ -3,6 +3,8 @@
 #include "normal_estimation.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -12,6 +14,8 @@
 #include <Eigen/Dense>
 
 #include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

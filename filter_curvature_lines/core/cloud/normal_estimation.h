@@ -3,6 +3,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "progress.h"
 
 namespace curvature_lines {

@@ -4,7 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

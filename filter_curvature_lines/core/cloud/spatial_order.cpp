@@ -3,8 +3,14 @@
 #include "spatial_order.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <tuple>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines {

@@ -3,7 +3,12 @@
 #include "voronoi_cells.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -11,6 +16,9 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
+
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crease_curves.h"
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
+
 namespace curvature_lines {
 
 double CreaseCurve::length() const

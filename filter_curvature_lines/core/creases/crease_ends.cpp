@@ -3,7 +3,17 @@
 #include "crease_ends.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "crease_points.h"
+#include "crease_tracing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

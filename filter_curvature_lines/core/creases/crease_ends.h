@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "crease_points.h"
 #include "crease_tracing.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

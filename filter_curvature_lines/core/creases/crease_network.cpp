@@ -5,11 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "crease_curves.h"
 #include "crease_ends.h"
+#include "crease_points.h"
+#include "crease_tracing.h"
 #include "disjoint_sets.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -5,9 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "local_surface.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "quantile.h"
 #include "robust_kernel.h"
 

@@ -4,9 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "crease_points.h"
+#include "local_surface.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "quantile.h"
 #include "robust_kernel.h"
 

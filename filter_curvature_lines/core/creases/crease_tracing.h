@@ -4,8 +4,13 @@
 #pragma once
 
 #include <optional>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "crease_points.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

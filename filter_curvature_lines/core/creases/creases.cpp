@@ -3,11 +3,19 @@
 #include "creases.h"
 
 #include <algorithm>
-#include <cmath>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "cloud_index.h"
+#include "crease_curves.h"
 #include "crease_network.h"
+#include "crease_points.h"
+#include "crease_tracing.h"
+#include "local_surface.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

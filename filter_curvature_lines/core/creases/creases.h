@@ -5,6 +5,7 @@
 
 #include "cloud_index.h"
 #include "crease_curves.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -4,12 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "adaptive_scale.h"
+#include "anchor_fits.h"
+#include "cloud_index.h"
+#include "curvature_field.h"
+#include "local_polynomial.h"
+#include "local_surface.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
+#include "progress.h"
 #include "quantile.h"
 #include "robust_curvature.h"
 #include "robust_kernel.h"
+#include "surface_anchors.h"
 
 namespace curvature_lines {
 

@@ -3,9 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "adaptive_scale.h"
 #include "cloud_index.h"
 #include "curvature_field.h"
+#include "local_surface.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -5,12 +5,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "anchor_fits.h"
+#include "local_surface.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
 #include "probe_components.h"
+#include "progress.h"
 #include "quantile.h"
+#include "surface_anchors.h"
 
 namespace curvature_lines {
 

@@ -4,6 +4,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "members.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
+#include "progress.h"
 #include "surface_anchors.h"
 
 namespace curvature_lines {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace curvature_lines {
 
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "robust_curvature.h"
+#include <Eigen/Core>
 
 namespace curvature_lines {
 

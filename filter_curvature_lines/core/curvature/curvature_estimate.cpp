@@ -4,6 +4,15 @@
 
 #include <Eigen/Geometry>
 
+#include "adaptive_curvature.h"
+#include "cloud_index.h"
+#include "curvature_field.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "robust_curvature.h"
+
 namespace curvature_lines {
 
 namespace {

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "adaptive_curvature.h"
+#include <Eigen/Core>
+
+#include "adaptive_scale.h"
+#include "cloud_index.h"
+#include "curvature_field.h"
+#include "progress.h"
 #include "robust_curvature.h"
 
 namespace curvature_lines {

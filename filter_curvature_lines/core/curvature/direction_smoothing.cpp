@@ -4,13 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstdint>
+#include <functional>
 #include <iterator>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/IterativeLinearSolvers>
 
 #include "box_minimization.h"
+#include "curvature_field.h"
 #include "direction_trust.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -6,7 +6,9 @@
 
 #include <Eigen/SparseCore>
 
-#include "robust_curvature.h"
+#include "curvature_field.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

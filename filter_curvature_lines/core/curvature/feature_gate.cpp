@@ -3,10 +3,20 @@
 #include "feature_gate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "irls.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "operating_region.h"
+#include "point_cloud.h"
 #include "robust_kernel.h"
 
 namespace curvature_lines {

@@ -5,8 +5,14 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "irls.h"
+#include "members.h"
 #include "operating_region.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

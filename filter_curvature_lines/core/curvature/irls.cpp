@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "bracketed_selection.h"
+#include "point_cloud.h"
+#include "robust_kernel.h"
 
 namespace curvature_lines {
 

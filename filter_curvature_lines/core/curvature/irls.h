@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "point_cloud.h"
 #include "robust_kernel.h"
 

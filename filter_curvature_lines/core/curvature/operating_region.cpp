@@ -3,7 +3,16 @@
 #include "operating_region.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "irls.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -3,8 +3,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "irls.h"
+#include "members.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

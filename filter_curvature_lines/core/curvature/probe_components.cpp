@@ -3,6 +3,15 @@
 #include "probe_components.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "members.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -4,8 +4,12 @@
 #pragma once
 
 #include <deque>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

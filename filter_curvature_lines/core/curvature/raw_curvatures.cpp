@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "curvature_field.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

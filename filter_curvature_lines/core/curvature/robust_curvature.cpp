@@ -5,10 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "cloud_index.h"
+#include "curvature_field.h"
 #include "feature_gate.h"
+#include "irls.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "operating_region.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

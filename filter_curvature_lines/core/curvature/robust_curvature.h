@@ -6,6 +6,8 @@
 #include "cloud_index.h"
 #include "curvature_field.h"
 #include "members.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_kernel.h"
 
 namespace curvature_lines {

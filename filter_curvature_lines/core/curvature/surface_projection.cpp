@@ -5,10 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
+#include "block_size.h"
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "quantile.h"
 #include "sample_kernels.h"
 

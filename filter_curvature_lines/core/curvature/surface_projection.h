@@ -3,7 +3,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "robust_curvature.h"
+#include <Eigen/Core>
+
+#include "curvature_field.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

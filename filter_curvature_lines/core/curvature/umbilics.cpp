@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "curvature_field.h"
 #include "disjoint_sets.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

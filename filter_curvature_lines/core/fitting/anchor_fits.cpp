@@ -4,6 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "local_surface.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

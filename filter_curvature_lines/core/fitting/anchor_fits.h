@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "local_surface.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "point_subsets.h"
 
 namespace curvature_lines {

@@ -5,12 +5,19 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "covering_patch.h"
 #include "face_projection.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_kernel.h"
+#include "surface_patch.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "covering_patch.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

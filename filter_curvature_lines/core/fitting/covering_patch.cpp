@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "local_polynomial.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "robust_kernel.h"
+#include "surface_patch.h"
 
 namespace curvature_lines {
 

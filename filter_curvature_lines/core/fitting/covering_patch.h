@@ -4,8 +4,12 @@
 #pragma once
 
 #include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "neighborhoods.h"
+#include "point_cloud.h"
 #include "spatial_order.h"
 #include "surface_patch.h"
 

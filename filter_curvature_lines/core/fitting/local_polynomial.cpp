@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "local_polynomial.h"
 
+#include <algorithm>
 #include <array>
 
 #include <Eigen/Cholesky>
+
+#include "sample_kernels.h"
 
 namespace curvature_lines {
 

@@ -3,10 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "block_size.h"
+#include "monomials.h"
 #include "sample_kernels.h"
 
 namespace curvature_lines {

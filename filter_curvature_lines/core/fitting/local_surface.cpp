@@ -4,11 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "block_size.h"
 #include "bracketed_selection.h"
+#include "local_polynomial.h"
+#include "monomials.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "robust_kernel.h"
+#include "sample_kernels.h"
 
 namespace curvature_lines {
 

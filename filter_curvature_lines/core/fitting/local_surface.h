@@ -3,8 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "local_polynomial.h"
-#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "sample_kernels.h"
 
 namespace curvature_lines {
 

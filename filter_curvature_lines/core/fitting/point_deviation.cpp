@@ -4,9 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "blended_surface.h"
 #include "local_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "quantile.h"
+#include "spatial_order.h"
 
 namespace curvature_lines {
 

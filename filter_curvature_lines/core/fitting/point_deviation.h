@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "blended_surface.h"
 #include "point_cloud.h"
 #include "spatial_order.h"

@@ -3,7 +3,14 @@
 #include "point_subsets.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "members.h"
+#include "point_cloud.h"
 #include "quantile.h"
 
 namespace curvature_lines {

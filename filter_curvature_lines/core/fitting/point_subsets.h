@@ -4,9 +4,11 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

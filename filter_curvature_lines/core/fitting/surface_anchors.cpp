@@ -4,11 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "anchor_fits.h"
+#include "local_surface.h"
+#include "members.h"
+#include "monomials.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
+#include "progress.h"
 #include "quantile.h"
 
 namespace curvature_lines {

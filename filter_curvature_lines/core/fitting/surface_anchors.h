@@ -3,9 +3,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "anchor_fits.h"
+#include "local_surface.h"
+#include "members.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
 
 namespace curvature_lines {
 

@@ -3,14 +3,20 @@
 #include "surface_patch.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Dense>
 
 #include "bracketed_selection.h"
+#include "local_polynomial.h"
+#include "monomials.h"
+#include "neighborhoods.h"
 #include "robust_kernel.h"
+#include "sample_kernels.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "local_polynomial.h"
+#include "monomials.h"
 #include "neighborhoods.h"
 
 namespace curvature_lines {

@@ -3,7 +3,13 @@
 #include "line_chains.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <utility>
+#include <vector>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
+
 namespace curvature_lines {
 
 Eigen::VectorXd arcLengths(const LineNetwork& lines)

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <array>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "point_cloud.h"
 

@@ -3,11 +3,19 @@
 #include "line_untangling.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "line_network.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -3,6 +3,13 @@
 #include "crossing_order.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "line_crossing.h"
+#include "line_network.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

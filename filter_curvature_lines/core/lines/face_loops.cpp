@@ -3,10 +3,14 @@
 #include "face_loops.h"
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Geometry>
 
-#include "line_intersections.h"
+#include "half_edge_graph.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "half_edge_graph.h"
+#include "point_cloud.h"
 #include "voronoi_cells.h"
 
 namespace curvature_lines {

@@ -5,13 +5,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "disjoint_sets.h"
 #include "face_loops.h"
 #include "graph_builder.h"
+#include "half_edge_graph.h"
+#include "line_crossing.h"
+#include "line_intersections.h"
+#include "line_network.h"
+#include "members.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

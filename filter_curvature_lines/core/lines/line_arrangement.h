@@ -5,6 +5,9 @@
 
 #include "half_edge_graph.h"
 #include "line_intersections.h"
+#include "line_network.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <tuple>
+#include <vector>
 
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -13,6 +15,11 @@
 #include <Eigen/Geometry>
 
 #include "crossing_order.h"
+#include "line_crossing.h"
+#include "line_network.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

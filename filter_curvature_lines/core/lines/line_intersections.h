@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "line_crossing.h"
 #include "line_network.h"
+#include "point_cloud.h"
 #include "progress.h"
 #include "voronoi_cells.h"
 

@@ -3,9 +3,13 @@
 #include "line_registry.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -3,12 +3,24 @@
 #include "line_spacing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <queue>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <boost/math/tools/toms748_solve.hpp>
+
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

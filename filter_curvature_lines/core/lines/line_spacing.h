@@ -4,9 +4,11 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "curvature_field.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -3,12 +3,24 @@
 #include "line_tracing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "curvature_field.h"
+#include "line_network.h"
 #include "line_registry.h"
+#include "line_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "surface_flow.h"
+#include "umbilics.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "curvature_field.h"
 #include "line_network.h"
 #include "line_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "surface_projection.h"
 #include "umbilics.h"
 #include "voronoi_cells.h"

@@ -4,14 +4,25 @@
 #include "quad_mesh.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "face_loops.h"
+#include "half_edge_graph.h"
 #include "line_arrangement.h"
+#include "line_intersections.h"
+#include "line_network.h"
+#include "mesh_finishing.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "polygon_splitting.h"
 #include "polygons.h"
+#include "progress.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

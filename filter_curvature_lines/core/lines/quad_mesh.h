@@ -4,6 +4,7 @@
 
 #include "line_network.h"
 #include "mesh_finishing.h"
+#include "point_cloud.h"
 #include "progress.h"
 #include "voronoi_cells.h"
 

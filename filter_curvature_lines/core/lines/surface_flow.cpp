@@ -4,8 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "surface_projection.h"
+#include "umbilics.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

@@ -3,6 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "surface_projection.h"
 #include "umbilics.h"
 #include "voronoi_cells.h"

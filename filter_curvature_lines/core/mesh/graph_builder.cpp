@@ -2,6 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "graph_builder.h"
 
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "half_edge_graph.h"
+#include "point_cloud.h"
 #include "polygon_mesh.h"
 
 namespace curvature_lines {

@@ -4,7 +4,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "half_edge_graph.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

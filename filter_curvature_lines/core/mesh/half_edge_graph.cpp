@@ -5,8 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "polygon_splitting.h"
 
 namespace curvature_lines {

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "point_cloud.h"
 #include "polygon_mesh.h"
 
 namespace curvature_lines {

@@ -3,9 +3,14 @@
 #include "polygon_mesh.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "disjoint_sets.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

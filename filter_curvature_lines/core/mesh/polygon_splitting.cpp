@@ -4,12 +4,18 @@
 #include "polygon_splitting.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 

@@ -4,8 +4,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <unordered_set>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "polygon_mesh.h"
 
 namespace curvature_lines {

@@ -3,9 +3,13 @@
 #include "polygon_triangulation.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <utility>
+#include <vector>
 
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "polygon_splitting.h"
 
 namespace curvature_lines {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include "point_cloud.h"
 #include "polygon_mesh.h"
 
 namespace curvature_lines {

@@ -3,6 +3,15 @@
 #include "polygons.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "half_edge_graph.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 

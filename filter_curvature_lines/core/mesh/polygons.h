@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "half_edge_graph.h"
+#include "point_cloud.h"
 #include "polygon_mesh.h"
 
 namespace curvature_lines {

@@ -3,10 +3,16 @@
 #include "quad_cleanup.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "polygon_splitting.h"
 #include "rim_cleanup.h"
 

@@ -3,10 +3,17 @@
 #include "rim_cleanup.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 

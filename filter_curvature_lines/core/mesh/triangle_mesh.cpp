@@ -3,13 +3,17 @@
 #include "triangle_mesh.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <tuple>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "disjoint_sets.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

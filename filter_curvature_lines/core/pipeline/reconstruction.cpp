@@ -5,6 +5,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "cloud_index.h"
+#include "curvature_estimate.h"
+#include "denoising.h"
+#include "mesh_finishing.h"
+#include "progress.h"
+#include "quad_mesh.h"
+#include "stages.h"
+#include "umbilics.h"
+
 namespace curvature_lines {
 
 namespace {

@@ -3,12 +3,33 @@
 #include "stages.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "cloud_index.h"
+#include "crease_curves.h"
+#include "creases.h"
+#include "curvature_estimate.h"
+#include "curvature_field.h"
+#include "denoising.h"
+#include "direction_smoothing.h"
 #include "even_sample.h"
+#include "line_network.h"
 #include "line_spacing.h"
+#include "line_tracing.h"
+#include "neighborhoods.h"
+#include "outlier_rejection.h"
+#include "outlier_result.h"
+#include "point_cloud.h"
+#include "position_field_mesh.h"
+#include "progress.h"
+#include "scaffold.h"
+#include "umbilics.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 

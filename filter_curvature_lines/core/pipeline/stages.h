@@ -6,17 +6,22 @@
 #include <chrono>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "cloud_index.h"
+#include "crease_curves.h"
 #include "creases.h"
 #include "curvature_estimate.h"
+#include "curvature_field.h"
 #include "denoising.h"
 #include "direction_smoothing.h"
 #include "line_network.h"
 #include "line_tracing.h"
 #include "mesh_finishing.h"
 #include "outlier_rejection.h"
+#include "point_cloud.h"
 #include "position_field_mesh.h"
+#include "progress.h"
 #include "umbilics.h"
 #include "voronoi_cells.h"
 

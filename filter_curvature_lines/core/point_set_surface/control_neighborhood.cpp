@@ -3,9 +3,17 @@
 #include "control_neighborhood.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
+#include <Eigen/Core>
+
+#include "block_size.h"
 #include "gaussian_sums.h"
+#include "local_polynomial.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "sample_kernels.h"
 
 namespace curvature_lines {
 

@@ -3,8 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "local_polynomial.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

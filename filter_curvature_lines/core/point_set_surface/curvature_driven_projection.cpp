@@ -4,10 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
+#include "control_neighborhood.h"
+#include "local_polynomial.h"
 #include "m_weighted_curvature.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
 
 namespace curvature_lines {
 

@@ -3,6 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "control_neighborhood.h"
+#include "point_cloud.h"
 #include "point_set_surface.h"
 
 namespace curvature_lines {

@@ -3,6 +3,7 @@
 #include "gaussian_sums.h"
 
 #include "gaussian_sums_simd.h"
+#include "sample_kernels.h"
 #include "simd_dispatch.h"
 
 namespace curvature_lines {

@@ -4,10 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Dense>
 
+#include "curvature_field.h"
 #include "gaussian_sums.h"
+#include "local_polynomial.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

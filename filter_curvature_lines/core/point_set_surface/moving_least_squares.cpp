@@ -2,7 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "moving_least_squares.h"
 
+#include <optional>
+
 #include <Eigen/Dense>
+
+#include "control_neighborhood.h"
+#include "local_polynomial.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
 
 namespace curvature_lines {
 

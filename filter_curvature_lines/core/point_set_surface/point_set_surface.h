@@ -4,8 +4,13 @@
 #pragma once
 
 #include <optional>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "control_neighborhood.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

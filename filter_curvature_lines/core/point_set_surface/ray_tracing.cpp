@@ -5,8 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Geometry>
 #include <unsupported/Eigen/BVH>
+
+#include "control_neighborhood.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -6,8 +6,16 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "control_neighborhood.h"
+#include "point_cloud.h"
 #include "point_set_surface.h"
+#include "progress.h"
 
 namespace curvature_lines {
 

@@ -4,10 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "control_neighborhood.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "quantile.h"
+#include "ray_tracing.h"
 
 namespace curvature_lines {
 

@@ -2,6 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "control_neighborhood.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "ray_tracing.h"
 
 namespace curvature_lines {

@@ -4,13 +4,21 @@
 #include "advancing_front.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <random>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <CGAL/Advancing_front_surface_reconstruction.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

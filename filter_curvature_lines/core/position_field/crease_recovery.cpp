@@ -3,10 +3,17 @@
 #include "crease_recovery.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

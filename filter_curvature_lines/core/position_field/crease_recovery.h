@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {

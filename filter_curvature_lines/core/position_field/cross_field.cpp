@@ -4,11 +4,22 @@
 #include "cross_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
+
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "scaffold.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

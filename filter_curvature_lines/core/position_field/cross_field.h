@@ -4,10 +4,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <complex>
+#include <cstdint>
+#include <vector>
 
-#include "robust_curvature.h"
+#include <Eigen/Core>
+
+#include "curvature_field.h"
+#include "point_cloud.h"
 #include "scaffold.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -4,8 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Geometry>
+
+#include "cross_field.h"
+#include "point_cloud.h"
+#include "position_field.h"
+#include "rims.h"
+#include "scaffold.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

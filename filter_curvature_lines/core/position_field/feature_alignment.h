@@ -3,9 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "cross_field.h"
 #include "position_field.h"
 #include "rims.h"
-#include "surface_arrangement.h"
+#include "scaffold.h"
+#include "surface_graph.h"
 
 namespace curvature_lines {
 

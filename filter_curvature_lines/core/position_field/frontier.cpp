@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "progress.h"
+#include <Eigen/Core>
 
 namespace curvature_lines {
 

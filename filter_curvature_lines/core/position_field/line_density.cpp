@@ -3,10 +3,19 @@
 #include "line_density.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
+
+#include "cross_field.h"
+#include "curvature_field.h"
+#include "point_cloud.h"
+#include "scaffold.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

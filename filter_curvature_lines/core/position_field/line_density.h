@@ -3,9 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <complex>
+#include <array>
+
+#include <Eigen/Core>
 
 #include "cross_field.h"
+#include "curvature_field.h"
+#include "point_cloud.h"
+#include "scaffold.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

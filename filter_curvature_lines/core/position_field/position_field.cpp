@@ -3,12 +3,19 @@
 #include "position_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
+#include "cross_field.h"
 #include "disjoint_sets.h"
+#include "line_density.h"
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

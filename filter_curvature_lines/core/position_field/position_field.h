@@ -4,7 +4,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "cross_field.h"
 #include "line_density.h"
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -3,13 +3,26 @@
 #include "position_field_lines.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstddef>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include <Eigen/SparseCholesky>
 
+#include "cloud_index.h"
+#include "cross_field.h"
+#include "curvature_field.h"
+#include "line_network.h"
 #include "line_untangling.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "scaffold.h"
+#include "surface_curves.h"
 #include "surface_projection.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include "cloud_index.h"
+#include "cross_field.h"
+#include "curvature_field.h"
 #include "line_network.h"
 #include "scaffold.h"
 #include "surface_curves.h"

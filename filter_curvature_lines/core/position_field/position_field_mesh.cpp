@@ -2,17 +2,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "position_field_mesh.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "cloud_index.h"
+#include "cross_field.h"
+#include "curvature_field.h"
 #include "feature_alignment.h"
+#include "line_density.h"
+#include "mesh_finishing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
+#include "position_field.h"
 #include "position_field_lines.h"
+#include "progress.h"
 #include "quad_cleanup.h"
 #include "rim_fit.h"
+#include "rims.h"
+#include "scaffold.h"
 #include "surface_arrangement.h"
+#include "surface_curves.h"
+#include "surface_graph.h"
 #include "surface_projection.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -3,10 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "cloud_index.h"
+#include "curvature_field.h"
 #include "line_network.h"
 #include "mesh_finishing.h"
+#include "point_cloud.h"
 #include "position_field.h"
+#include "progress.h"
 #include "scaffold.h"
 
 namespace curvature_lines {

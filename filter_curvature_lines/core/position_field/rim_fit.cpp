@@ -6,11 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "frontier.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "rims.h"
+#include "scaffold.h"
 
 namespace curvature_lines {
 

@@ -3,7 +3,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "rims.h"
+#include "scaffold.h"
 
 namespace curvature_lines {
 

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "scaffold.h"
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

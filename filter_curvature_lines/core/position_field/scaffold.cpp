@@ -4,18 +4,25 @@
 #include "scaffold.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "advancing_front.h"
+#include "cloud_index.h"
 #include "crease_recovery.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
 #include "polygon_mesh.h"
+#include "progress.h"
 #include "quantile.h"
-#include "surface_anchors.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -4,7 +4,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "cloud_index.h"
+#include "point_cloud.h"
 #include "progress.h"
 #include "triangle_mesh.h"
 

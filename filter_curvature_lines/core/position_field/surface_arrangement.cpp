@@ -3,9 +3,19 @@
 #include "surface_arrangement.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "disjoint_sets.h"
+#include "half_edge_graph.h"
+#include "point_cloud.h"
 #include "polygons.h"
+#include "surface_curves.h"
+#include "surface_graph.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

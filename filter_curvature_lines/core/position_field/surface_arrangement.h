@@ -4,8 +4,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "point_cloud.h"
 #include "polygon_mesh.h"
+#include "surface_curves.h"
 #include "surface_graph.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -3,8 +3,16 @@
 #include "surface_curves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cross_field.h"
+#include "point_cloud.h"
+#include "position_field.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

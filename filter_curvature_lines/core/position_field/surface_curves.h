@@ -3,7 +3,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "cross_field.h"
+#include "point_cloud.h"
 #include "position_field.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -5,10 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "graph_builder.h"
+#include "half_edge_graph.h"
+#include "point_cloud.h"
+#include "surface_curves.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

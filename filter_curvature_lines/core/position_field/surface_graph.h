@@ -4,8 +4,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "half_edge_graph.h"
+#include "point_cloud.h"
 #include "surface_curves.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "neighborhoods.h"
 
 namespace curvature_lines::test {
 namespace {

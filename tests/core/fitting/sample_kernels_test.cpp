@@ -12,6 +12,7 @@
 #include "analytic_surfaces.h"
 #include "local_polynomial.h"
 #include "local_surface.h"
+#include "neighborhoods.h"
 #include "sample_kernels_simd.h"
 
 namespace curvature_lines {

@@ -9,6 +9,7 @@
 
 #include "analytic_surfaces.h"
 #include "reconstruction.h"
+#include "stages.h"
 
 namespace curvature_lines {
 namespace {

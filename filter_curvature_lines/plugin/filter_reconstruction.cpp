@@ -143,11 +143,7 @@ void writeCleanedCloud(
 		rawCurvatures(points.normals, own, result.field, result.umbilics.umbilic);
 	writeCurvature(layer, points, values);
 	writeQuality(layer, points, scalarsOf(values, CurvatureScalar::Mean));
-	Eigen::VectorXd moved(n);
-	for (Index i = 0; i < n; ++i)
-		moved[i] =
-			(result.cloud.positions.col(i) - frame.cloud.positions.col(result.kept[i])).norm();
-	writeAttribute(layer, points, "moved", frame.diagonal * moved);
+	writeAttribute(layer, points, "moved", frame.diagonal * result.moves);
 }
 
 void reportStages(FilterResults& results, const ReconstructionResult& result)

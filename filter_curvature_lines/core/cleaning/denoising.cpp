@@ -19,11 +19,11 @@ namespace {
 
 void measureMoves(const PointCloud& cloud, DenoisingResult& result)
 {
+	result.moves = (result.positions - cloud.positions).colwise().norm();
 	if (cloud.size() == 0)
 		return;
-	const Eigen::VectorXd moves = (result.positions - cloud.positions).colwise().norm();
-	result.rmsMove              = std::sqrt(moves.squaredNorm() / double(cloud.size()));
-	result.maxMove              = moves.maxCoeff();
+	result.rmsMove = std::sqrt(result.moves.squaredNorm() / double(cloud.size()));
+	result.maxMove = result.moves.maxCoeff();
 }
 
 } // namespace

@@ -22,7 +22,8 @@ struct DenoisingOptions {
 
 struct DenoisingResult {
 	Eigen::Matrix3Xd positions, normals;           // 3 x N
-	double           rmsMove = 0.0, maxMove = 0.0; // lengths
+	Eigen::VectorXd  moves;                        // N, lengths
+	double           rmsMove = 0.0, maxMove = 0.0; // of these
 	// Robust: what was used.
 	double pointDeviation = 0.0; // RobustDenoisingResult::pointDeviation, a length
 	double radius         = 0.0; // in local spacings

@@ -43,6 +43,7 @@ ReconstructionResult resultOf(NoisyPoints noisy, CleanSurface surface)
 	result.cloud   = surface.index.cloud();
 	result.field   = std::move(surface.field);
 	result.noise   = surface.noise;
+	result.moves   = std::move(surface.moves);
 	result.rmsMove = surface.rmsMove;
 	return result;
 }

@@ -68,8 +68,9 @@ struct ReconstructionResult {
 	Creases                 creases; // PositionField
 	PositionFieldMeshResult mesh;    // TracedLines: without what is particular to position fields
 	// RobustDenoisingResult::pointDeviation; without denoising OutlierResult::heightDeviation; else 0
-	double                        noise   = 0.0;
-	double                        rmsMove = 0.0; // by denoising
+	double                        noise = 0.0;
+	Eigen::VectorXd               moves;         // per point of `cloud`, lengths: by denoising
+	double                        rmsMove = 0.0; // their root mean square
 	std::map<std::string, double> seconds;       // per stage: outliers, neighborhoods, curvature, …
 };
 

@@ -161,6 +161,7 @@ CleanSurface adoptEstimate(const CloudIndex& index, CurvatureField field)
 {
 	CleanSurface surface;
 	surface.index = index.withNormals(field.correctedNormals);
+	surface.moves = Eigen::VectorXd::Zero(index.size());
 	surface.field = std::move(field);
 	makeTangent(surface.index.cloud().normals, surface.field);
 	return surface;
@@ -186,6 +187,7 @@ CleanSurface estimateThenDenoise(
 	surface.index   = noisy.index.moved(std::move(moved.positions), std::move(moved.normals));
 	surface.field   = std::move(ofNoisyPoints);
 	surface.noise   = moved.pointDeviation > 0.0 ? moved.pointDeviation : noisy.heightDeviation;
+	surface.moves   = std::move(moved.moves);
 	surface.rmsMove = moved.rmsMove;
 	surface.field.height.resize(0); // above the points as they were
 	makeTangent(surface.index.cloud().normals, surface.field);
@@ -200,8 +202,9 @@ CleanSurface denoiseThenEstimate(
 	StageClock&            clock,
 	const Progress&        progress)
 {
-	CloudIndex cleaned = noisy.index;
-	double     noise = noisy.heightDeviation, rmsMove = 0.0;
+	CloudIndex      cleaned = noisy.index;
+	double          noise = noisy.heightDeviation, rmsMove = 0.0;
+	Eigen::VectorXd moves = Eigen::VectorXd::Zero(noisy.index.size());
 	if (options.denoise) {
 		DenoisingResult moved;
 		if (options.denoising.method == DenoisingOptions::Method::Paper) {
@@ -220,16 +223,21 @@ CleanSurface denoiseThenEstimate(
 		clock.book("denoising");
 		if (moved.pointDeviation > 0.0)
 			noise = moved.pointDeviation;
+		moves   = std::move(moved.moves);
 		rmsMove = moved.rmsMove;
 		cleaned = noisy.index.moved(std::move(moved.positions), std::move(moved.normals));
 	}
 	CurvatureField field = estimate(cleaned, options.curvature, clock, progress.sub(0.6, 1.0, ""));
 	CleanSurface   surface;
-	if (options.curvature.scaleMode == ScaleMode::Adaptive)
+	if (options.curvature.scaleMode == ScaleMode::Adaptive) {
 		surface = adoptEstimate(cleaned, std::move(field));
-	else
-		surface = {cleaned, std::move(field)};
+	}
+	else {
+		surface.index = cleaned;
+		surface.field = std::move(field);
+	}
 	surface.noise   = noise;
+	surface.moves   = std::move(moves);
 	surface.rmsMove = rmsMove;
 	return surface;
 }

@@ -69,8 +69,10 @@ struct CleanSurface {
 	CloudIndex     index;
 	CurvatureField field;
 	// RobustDenoisingResult::pointDeviation; without denoising OutlierResult::heightDeviation; else 0
-	double noise   = 0.0;
-	double rmsMove = 0.0; // by denoising, a length
+	double noise = 0.0;
+	// N, lengths: how far denoising moved each point, 0 without; and their root mean square
+	Eigen::VectorXd moves;
+	double          rmsMove = 0.0;
 };
 
 // Curvature from the noisy points, then denoising. Denoised points lie on a smooth surface of its own small waves,

@@ -25,8 +25,8 @@ using Kernel      = CGAL::Exact_predicates_inexact_constructions_kernel;
 using OrientPoint = std::tuple<Kernel::Point_3, Kernel::Vector_3, Index>;
 
 // enough to connect one sheet, too few to bridge to the next
-constexpr unsigned OrientNeighbors = 12;
-constexpr int      MaxParts        = 64; // pieces of a cloud that are oriented one after another
+constexpr unsigned orientNeighbors = 12;
+constexpr int      maxParts        = 64; // pieces of a cloud that are oriented one after another
 
 Eigen::Vector3d planeNormal(const Eigen::Matrix3Xd& positions, const std::vector<Index>& points)
 {
@@ -56,8 +56,8 @@ void orient(const Eigen::Matrix3Xd& positions, Eigen::Matrix3Xd& normals, const 
 	}
 	const auto maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, OrientPoint>())
 	                      .normal_map(CGAL::Nth_of_tuple_property_map<1, OrientPoint>());
-	for (int part = 0; part < MaxParts && rest.size() > OrientNeighbors; ++part) {
-		const auto unreached = CGAL::mst_orient_normals(rest, OrientNeighbors, maps);
+	for (int part = 0; part < maxParts && rest.size() > orientNeighbors; ++part) {
+		const auto unreached = CGAL::mst_orient_normals(rest, orientNeighbors, maps);
 		for (auto point = rest.begin(); point != unreached; ++point) {
 			const Kernel::Vector_3& n        = std::get<1>(*point);
 			normals.col(std::get<2>(*point)) = Eigen::Vector3d(n.x(), n.y(), n.z());

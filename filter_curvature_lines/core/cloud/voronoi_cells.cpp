@@ -32,7 +32,7 @@ using Triangulation = CGAL::
 	Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 using Edge = std::pair<Index, Index>;
 
-constexpr Index ReportEvery = 8192;
+constexpr Index reportEvery = 8192;
 
 // Insertion in space-filling order keeps point location nearly constant. The order is a pure function
 // of the sites, and CGAL breaks cospherical ties by a symbolic perturbation of the coordinates, so the
@@ -64,7 +64,7 @@ std::vector<Edge> delaunayEdges(const Eigen::Matrix3Xd& sites, const Progress& p
 		// a site at the same position: reachable, at distance zero, through the one that came first
 		else
 			edges.emplace_back(last->info(), static_cast<Index>(order[k]));
-		if (k % ReportEvery == 0)
+		if (k % reportEvery == 0)
 			progress.report(0.8 * k / n);
 	}
 	if (triangulation.dimension() < 2)

@@ -31,10 +31,14 @@ namespace {
 
 constexpr const char* progressLabel = "Estimating curvature";
 
-constexpr Index  minPoints       = 8;
-constexpr double blendRadius     = 0.5;   // of the height radius
-constexpr double sameFace        = 0.8;   // dot product of normals
-constexpr double oppositeNormals = 1.265; // difference of unit vectors with a dot product of 0.2
+// docs/method.md, "Scale"; values without another reason by experiment (benchmarks/curvature.py).
+constexpr Index minPoints = 8; // a quadratic height polynomial has six coefficients
+// Radius over which anchors are interpolated, in height radii: anchors are thinned to a fraction of it.
+constexpr double blendRadius = 0.5;
+// Cosine of 37 degrees: scales whose normals differ further took different faces of an edge.
+constexpr double sameFace = 0.8;
+// Length of the difference of unit normals whose cosine is 0.2: beyond, they belong to opposite sheets.
+constexpr double oppositeNormals = 1.265;
 
 // Anchors of one scale with their shape operators, ready to be interpolated.
 class ScaleField {
@@ -285,11 +289,14 @@ AdaptiveSurface adaptiveSurface(
 
 namespace {
 
-constexpr double weightReach     = 3.0;     // local spacings, as the published operating region
-constexpr Index  medianPoints    = 32768;   // whose residuals give a median
+constexpr double weightReach = 3.0; // local spacings, as the published operating region
+// Points whose residuals give the median: its standard error among so many is below one percent.
+constexpr Index  medianPoints    = 32768;
 constexpr double agreementCosine = 0.99985; // of one degree
-constexpr double smallestSigma   = 3e-3;
-// The estimate smooths its normals, so the median is small, and the published cut would cut smooth parts.
+// Radians. On exact clouds the residuals are only what the curvature itself changes over the region.
+constexpr double smallestSigma = 3e-3;
+// Factor on the published sigma (A09 after eq. 1). The estimate smooths its normals, so the median is small, and the
+// published cut would cut smooth parts. By experiment (benchmarks/lines.py).
 constexpr double looseness = 3.0;
 
 // Principal curvatures and directions of one element.

@@ -12,11 +12,11 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr double Pi            = 3.14159265358979323846;
-constexpr double ScaleQuantile = 0.1;  // of |k|: the gentlest bends still show some colour
-constexpr double ScaleFactor   = 0.01; // over that quantile
-constexpr double ScaleCap      = 0.05; // of the model radius, for shapes that are mostly flat
-constexpr double Contrast      = 10.0;
+constexpr double pi            = 3.14159265358979323846;
+constexpr double scaleQuantile = 0.1;  // of |k|: the gentlest bends still show some colour
+constexpr double scaleFactor   = 0.01; // over that quantile
+constexpr double scaleCap      = 0.05; // of the model radius, for shapes that are mostly flat
+constexpr double contrast      = 10.0;
 
 // Length that makes k * scale dimensionless.
 double featureScale(const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double modelRadius)
@@ -27,10 +27,10 @@ double featureScale(const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double
 		sizes.push_back(std::abs(k1[i]));
 		sizes.push_back(std::abs(k2[i]));
 	}
-	const auto quantile = sizes.begin() + static_cast<long>(ScaleQuantile * (sizes.size() - 1));
+	const auto quantile = sizes.begin() + static_cast<long>(scaleQuantile * (sizes.size() - 1));
 	std::nth_element(sizes.begin(), quantile, sizes.end());
-	const double cap = ScaleCap * modelRadius;
-	return *quantile * cap > ScaleFactor ? ScaleFactor / *quantile : cap;
+	const double cap = scaleCap * modelRadius;
+	return *quantile * cap > scaleFactor ? scaleFactor / *quantile : cap;
 }
 
 // Full-value colour; hue in [0, 2 pi).
@@ -38,7 +38,7 @@ Eigen::Vector3d fromHue(double hue, double saturation)
 {
 	Eigen::Vector3d color;
 	for (int channel = 0; channel < 3; ++channel) {
-		const double sextant  = std::fmod(hue * 3.0 / Pi + 6.0 - 2.0 * channel + 2.0, 6.0);
+		const double sextant  = std::fmod(hue * 3.0 / pi + 6.0 - 2.0 * channel + 2.0, 6.0);
 		const double strength = std::clamp(2.0 - std::abs(sextant - 2.0), 0.0, 1.0);
 		color[channel]        = 1.0 - saturation * (1.0 - strength);
 	}
@@ -53,13 +53,13 @@ curvatureColors(const Eigen::VectorXd& k1, const Eigen::VectorXd& k2, double mod
 	Eigen::Matrix3Xd colors(3, k1.size());
 	if (k1.size() == 0)
 		return colors;
-	const double gain = std::pow(Contrast * featureScale(k1, k2, modelRadius), 2);
+	const double gain = std::pow(contrast * featureScale(k1, k2, modelRadius), 2);
 	for (Eigen::Index i = 0; i < k1.size(); ++i) {
 		const double mean = 0.5 * (k1[i] + k2[i]), gaussian = k1[i] * k2[i];
 		const double square = mean * mean;
 		const double hue =
 			4.0 / 3.0 * std::abs(std::atan2(square - gaussian, mean < 0.0 ? -square : square));
-		const double saturation = 2.0 / Pi * std::atan((2.0 * square - gaussian) * gain);
+		const double saturation = 2.0 / pi * std::atan((2.0 * square - gaussian) * gain);
 		colors.col(i)           = fromHue(hue, saturation);
 	}
 	return colors;

@@ -26,10 +26,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double maxNormalCosine  = 0.5;  // 60 degrees: beyond, there is an edge between two points
-constexpr Index  maxPartners      = 32;   // of one point's own choice; bounds memory, not the reach
-constexpr double startShift       = 1e-3; // keeps the linear start well-posed without a data term
-constexpr int    linearIterations = 200;
+constexpr double maxNormalCosine = 0.5; // 60 degrees: beyond, there is an edge between two points
+constexpr Index  maxPartners     = 32;  // of one point's own choice; bounds memory, not the reach
+// Added to the diagonal, whose entries are weights up to 1: keeps the linear start well-posed without a data term.
+constexpr double startShift = 1e-3;
+// Conjugate gradients for the start at most: it need not be exact, the energy is minimised from there.
+constexpr int linearIterations = 200;
 
 // The points with positive weight at i, on the same face, by index. Of a larger region every m-th
 // one: the same reach at a fraction of the pairs.

@@ -24,7 +24,10 @@ namespace curvature_lines {
 
 namespace {
 
-constexpr Index minPairs  = 5;
+// docs/method.md, "The published estimate"; values without another reason by experiment (benchmarks/paper_figures.py).
+constexpr Index minPairs =
+	5; // three equations each for the six entries of the variation model, with some to spare
+// Points that a gated region has where twice the radius holds so many: half of them may lie beyond a crease.
 constexpr Index minRegion = 20;
 // Shares: of the near neighbours that support a right normal (at a corner 1/3 do); of the cost of the
 // centre pairs that a better normal may leave, unless less than the third of the region agrees with n_i.

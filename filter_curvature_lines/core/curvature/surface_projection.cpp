@@ -26,21 +26,28 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// the second changes what the first leaves by second-order terms only
-constexpr int    mixedPasses   = 2;
-constexpr int    optimalPasses = 5;   // A09: "4-5 iterations"
-constexpr double kernelRatio   = 2.5; // support radius over the width of the smooth kernel
+// docs/method.md, "Projection onto the surface"; values without another reason by experiment (benchmarks/lines.py,
+// "Projections").
+// The second pass changes what the first leaves by second-order terms only.
+constexpr int mixedPasses   = 2;
+constexpr int optimalPasses = 5; // A09 section 5.1: "4-5 iterations"
+// Radius of the support over the width of the kernel exp(-r^2): at the border the weight has fallen to .2 %.
+constexpr double kernelRatio = 2.5;
 // LOP: theta(r) = exp(-r^2 / (h/4)^2); plain averages shrink as much
 constexpr double averageRatio   = 4.0;
 constexpr double minRadiusRatio = 1e-6; // guards LOP's 1/r
-// tangent of the turn by which curvature may correct a normal
+// Tangent of the largest angle, 27 degrees, by which curvature may correct a normal.
 constexpr double maxNormalTurn = 0.5;
-constexpr double flatShare     = 1e-3; // see principalDirection()
-constexpr double slopeRidge    = 0.01; // of the slopes in tensorAt(), against points on a line
-// even if that much of the cloud has no noise, the rest counts
+// Weight of the directions over that of the tensors, in principalDirection(): decides only where the tensors cancel.
+constexpr double flatShare = 1e-3;
+// Added to the second moments in tensorAt(), as a share of the total weight: points on a line have no slope across.
+constexpr double slopeRidge = 0.01;
+// Heights over the fitted surfaces are noise up to mostNoise times their quantile noisyShare. The quantile is that high
+// so that noise in a tenth of the cloud still counts; of a normal distribution both together are 2.5 x 1.645 = 4.1
+// standard deviations.
 constexpr double noisyShare = 0.9;
-constexpr double mostNoise  = 2.5; // over that quantile: four standard deviations
-// kernel widths between c and the mean point that are extrapolated
+constexpr double mostNoise  = 2.5;
+// Kernel widths from a place to the mean of the points around, over which the tensors are extrapolated.
 constexpr double maxBeside = 1.0;
 
 // Of the support at hand, one at a time in each thread.

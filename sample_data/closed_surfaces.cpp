@@ -98,7 +98,9 @@ public:
 
 	Vector3d sample(Random& random) const override
 	{
-		return at(random.uniform(-R - m_half, R + m_half), random.uniform(0.0, 2.0 * pi));
+		// One after the other: the order of arguments is the compiler's choice.
+		const double angle = random.uniform(0.0, 2.0 * pi);
+		return at(random.uniform(-R - m_half, R + m_half), angle);
 	}
 
 	Matrix3Xd grid(int points) const override

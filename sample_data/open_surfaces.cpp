@@ -32,7 +32,9 @@ public:
 
 	Vector3d sample(Random& random) const override
 	{
-		return at(random.uniform(0.0, 2.0 * pi), random.uniform(-half, half));
+		// One after the other: the order of arguments is the compiler's choice.
+		const double height = random.uniform(-half, half);
+		return at(random.uniform(0.0, 2.0 * pi), height);
 	}
 
 	Matrix3Xd grid(int points) const override

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,13 +27,13 @@ public:
 	template<class Make>
 	const Value& get(const Make& make) const
 	{
-		std::call_once(m_once, [&] { m_value.emplace(make()); });
+		std::call_once(m_once, [&] { m_value = std::make_unique<const Value>(make()); });
 		return *m_value;
 	}
 
 private:
-	mutable std::once_flag       m_once;
-	mutable std::optional<Value> m_value;
+	mutable std::once_flag               m_once;
+	mutable std::unique_ptr<const Value> m_value;
 };
 
 } // namespace

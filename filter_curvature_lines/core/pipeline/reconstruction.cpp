@@ -21,7 +21,7 @@ namespace {
 constexpr double leastSample = 20000.0; // points that thinning leaves, at least
 
 NoisyPoints inliersOf(
-	CloudIndex                   given,
+	const CloudIndex&            given,
 	const ReconstructionOptions& options,
 	StageClock&                  clock,
 	const Progress&              progress)
@@ -56,7 +56,8 @@ adaptiveRecipe(CloudIndex given, const ReconstructionOptions& options, const Pro
 	StageClock            clock;
 	const CleaningOptions cleaning{options.denoise, options.curvature, options.denoising};
 
-	NoisyPoints  noisy  = inliersOf(std::move(given), options, clock, progress.sub(0.0, 0.2, ""));
+	NoisyPoints noisy   = inliersOf(given, options, clock, progress.sub(0.0, 0.2, ""));
+	given               = {}; // not needed any more
 	const double useful = options.pointsPerVertex * options.tracing.targetVertices;
 	if (useful > 0.0 && noisy.index.size() > std::max(useful, leastSample)) {
 		noisy = thinned(
@@ -98,7 +99,8 @@ publishedRecipe(CloudIndex given, const ReconstructionOptions& options, const Pr
         options.smoothDirections, options.directions, options.umbilics, options.tracing};
 	following.umbilics.smoothed = options.smoothDirections;
 
-	NoisyPoints  noisy   = inliersOf(std::move(given), options, clock, progress.sub(0.0, 0.2, ""));
+	NoisyPoints noisy    = inliersOf(given, options, clock, progress.sub(0.0, 0.2, ""));
+	given                = {}; // not needed any more
 	CleanSurface surface = denoiseThenEstimate(noisy, cleaning, clock, progress.sub(0.2, 0.65, ""));
 	noisy.index          = {}; // not needed any more
 	TracedLines traced   = followDirections(

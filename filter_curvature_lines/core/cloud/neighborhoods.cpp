@@ -16,7 +16,6 @@
 
 #include <nanoflann.hpp>
 
-#include "box_minimization.h"
 #include "point_cloud.h"
 #include "progress.h"
 #include "quantile.h"

@@ -17,7 +17,6 @@
 #include "crease_points.h"
 #include "crease_tracing.h"
 #include "disjoint_sets.h"
-#include "members.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 

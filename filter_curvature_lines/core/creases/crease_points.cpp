@@ -12,7 +12,6 @@
 #include <Eigen/Dense>
 
 #include "local_surface.h"
-#include "members.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "progress.h"

@@ -13,7 +13,6 @@
 #include <Eigen/Core>
 
 #include "irls.h"
-#include "members.h"
 #include "neighborhoods.h"
 #include "operating_region.h"
 #include "point_cloud.h"

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include "members.h"
 #include "point_cloud.h"
 
 namespace curvature_lines {

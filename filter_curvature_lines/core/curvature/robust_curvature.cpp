@@ -14,7 +14,6 @@
 #include "curvature_field.h"
 #include "feature_gate.h"
 #include "irls.h"
-#include "members.h"
 #include "neighborhoods.h"
 #include "operating_region.h"
 #include "point_cloud.h"

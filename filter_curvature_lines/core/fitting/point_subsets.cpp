@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include "members.h"
 #include "point_cloud.h"
 #include "quantile.h"
 

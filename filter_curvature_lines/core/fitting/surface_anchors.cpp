@@ -15,7 +15,6 @@
 
 #include "anchor_fits.h"
 #include "local_surface.h"
-#include "members.h"
 #include "monomials.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"

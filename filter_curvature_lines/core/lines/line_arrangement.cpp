@@ -19,7 +19,6 @@
 #include "line_crossing.h"
 #include "line_intersections.h"
 #include "line_network.h"
-#include "members.h"
 #include "point_cloud.h"
 #include "voronoi_cells.h"
 

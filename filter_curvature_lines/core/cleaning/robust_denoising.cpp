@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -101,6 +100,18 @@ Progress rung(const Progress& progress, int k)
 	return progress.sub(1.0 - std::pow(left, k), 1.0 - std::pow(left, k + 1), stage);
 }
 
+// Smoothed normals on the side of `normals`, which are in the order of the index: only the side matters to a guide, and
+// that of a single normal may be wrong.
+Eigen::Matrix3Xd
+guideNormals(const CloudIndex& index, const Eigen::Matrix3Xd& normals, const Progress& progress)
+{
+	Eigen::Matrix3Xd result = index.order().arrange(index.gateNormals(progress));
+	for (Index i = 0; i < index.size(); ++i)
+		if (normals.col(i).dot(result.col(i)) > 0.0)
+			result.col(i) = normals.col(i);
+	return result;
+}
+
 struct Candidate {
 	std::vector<double> radius; // per point, of its patches: a length
 	BlendedSurface      blend;
@@ -109,12 +120,13 @@ struct Candidate {
 
 class RobustDenoiser {
 public:
-	RobustDenoiser(const CloudIndex& index, const RobustDenoisingOptions& options);
+	// `progress`: of the spacing and of the normals that the first guide needs.
+	RobustDenoiser(
+		const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress);
 	RobustDenoisingResult run(const Progress& progress);
 
 private:
 	Index size() const { return m_input.cloud.size(); }
-	void prepare(const Progress& progress);
 	void findPointDeviation(const Progress& progress);
 	void findPointsOffEdges(const Progress& progress);
 	double freeRadius(const Progress& progress) const;
@@ -141,40 +153,31 @@ private:
 		const Progress&           progress) const;
 	double score(const Candidate& candidate, const std::vector<Index>& points) const;
 
-	CloudIndex                m_index;
-	RobustDenoisingOptions    m_options;
-	BlendInput                m_input;
-	std::optional<BlendGuide> m_start;      // the input itself
-	std::vector<Index>        m_everywhere; // all points
-	std::vector<Index>        m_test;       // points that scores are taken from
-	std::vector<Index>        m_offEdges;   // of m_test, off the edges
-	std::vector<double>       m_least;      // radius per point, a length: wider than the noise
-	std::vector<double>       m_unit;       // of radii per point, a length
+	RobustDenoisingOptions m_options;
+	BlendInput             m_input;
+	BlendGuide             m_start;      // the input itself
+	std::vector<Index>     m_everywhere; // all points
+	std::vector<Index>     m_test;       // points that scores are taken from
+	std::vector<Index>     m_offEdges;   // of m_test, off the edges
+	std::vector<double>    m_least;      // radius per point, a length: wider than the noise
+	std::vector<double>    m_unit;       // of radii per point, a length
 };
 
-RobustDenoiser::RobustDenoiser(const CloudIndex& index, const RobustDenoisingOptions& options) :
-		m_index(index), m_options(options),
+RobustDenoiser::RobustDenoiser(
+	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress) :
+		m_options(options),
 		m_input{
 			index.order(),
 			{index.arrangedPositions(), index.order().arrange(index.cloud().normals)},
-			{},
+			index.spacing(progress.sub(0.0, 0.5, stage)),
 			{}},
+		m_start(
+			m_input.cloud.positions,
+			guideNormals(index, m_input.cloud.normals, progress.sub(0.5, 1.0, stage)),
+			index.arrangedSearch()),
 		m_everywhere(index.size()), m_test(m_input.order.sample(testPoints)), m_offEdges(m_test)
 {
 	std::iota(m_everywhere.begin(), m_everywhere.end(), 0);
-}
-
-void RobustDenoiser::prepare(const Progress& progress)
-{
-	const PointCloud& cloud = m_input.cloud;
-	m_input.spacing         = m_index.spacing(progress.sub(0.0, 0.5, stage));
-	// Only the side of the normals matters, and that of a single one may be wrong.
-	Eigen::Matrix3Xd normals =
-		m_input.order.arrange(m_index.gateNormals(progress.sub(0.5, 1.0, stage)));
-	for (Index i = 0; i < size(); ++i)
-		if (cloud.normals.col(i).dot(normals.col(i)) > 0.0)
-			normals.col(i) = cloud.normals.col(i);
-	m_start.emplace(cloud.positions, std::move(normals), m_index.arrangedSearch());
 }
 
 std::vector<double> RobustDenoiser::inSpacings(const std::vector<double>& lengths) const
@@ -238,7 +241,7 @@ void RobustDenoiser::findPointDeviation(const Progress& progress)
 		if (m_options.noise <= 0.0) {
 			options.radius         = m_least;
 			m_input.pointDeviation = pointDeviation(
-				blendPatches(m_input, *m_start, options, m_test, rung(progress, k)),
+				blendPatches(m_input, m_start, options, m_test, rung(progress, k)),
 				m_input.cloud,
 				m_input.order);
 		}
@@ -279,7 +282,7 @@ void RobustDenoiser::findPointsOffEdges(const Progress& progress)
 				pilotNoise * m_input.pointDeviation[i],
 				minPilotRadius * m_input.spacing[i],
 				maxFlagRadius * m_input.spacing[i]));
-	const BlendedSurface blend = blendPatches(m_input, *m_start, options, m_test, progress);
+	const BlendedSurface blend = blendPatches(m_input, m_start, options, m_test, progress);
 	std::vector<Index>   offEdges;
 	Index                clear = 0;
 	for (const Index i : m_test) {
@@ -306,7 +309,7 @@ double RobustDenoiser::freeRadius(const Progress& progress) const
 	double best = std::numeric_limits<double>::infinity(), radius = factor;
 	for (int k = 0; factor < widest; ++k, factor *= freeStep) {
 		options.radius = radii(factor);
-		const double s = score(candidate(*m_start, options, m_test, rung(progress, k)), m_offEdges);
+		const double s = score(candidate(m_start, options, m_test, rung(progress, k)), m_offEdges);
 		if (s < best)
 			radius = factor;
 		best = std::min(best, s);
@@ -344,7 +347,7 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 	BlendOptions options;
 	options.radius  = radii(factor);
 	options.purity  = strictPurity;
-	Candidate c     = candidate(*m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
+	Candidate c     = candidate(m_start, options, m_everywhere, progress.sub(0.2, 0.4, stage));
 	options.support = Support::ArcLength;
 	options.purity  = mildPurity;
 	double start    = arcStart * factor;
@@ -380,7 +383,7 @@ BlendedSurface RobustDenoiser::edgePilot(
 	options.purity     = strictPurity;
 	options.acceptance = pilotAcceptance;
 	const BlendedSurface free =
-		blendPatches(m_input, *m_start, options, targets, progress.sub(0.0, 0.5, stage));
+		blendPatches(m_input, m_start, options, targets, progress.sub(0.0, 0.5, stage));
 	Eigen::Matrix3Xd positions = smooth.blend.positions, normals = smooth.blend.normals;
 	for (const Index i : targets) {
 		positions.col(i) = free.positions.col(i);
@@ -491,7 +494,6 @@ void RobustDenoiser::undoFarMoves(BlendedSurface& blend) const
 
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
-	prepare(progress.sub(0.0, 0.05, stage));
 	findPointDeviation(progress.sub(0.05, 0.15, stage));
 	findUnits();
 	findPointsOffEdges(progress.sub(0.15, 0.2, stage));
@@ -515,7 +517,7 @@ RobustDenoisingResult denoiseRobustly(
 {
 	if (index.size() < fewestPoints)
 		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius};
-	return RobustDenoiser(index, options).run(progress);
+	return RobustDenoiser(index, options, progress.sub(0.0, 0.05, stage)).run(progress);
 }
 
 } // namespace curvature_lines

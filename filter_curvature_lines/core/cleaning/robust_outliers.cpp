@@ -124,6 +124,7 @@ void RobustVote::chooseSize(const Progress& progress)
 		placeVoters(std::max<Index>(1, size() / pilotVoters));
 		fitPlaced(progress.sub(0.5 * round, 0.5 * (round + 1), "Measuring the noise"));
 		std::vector<double> wanted;
+		wanted.reserve(m_voters.size());
 		for (const OutlierVoter& voter : m_voters)
 			wanted.push_back(neighborsWanted(voter));
 		m_voters.clear();

@@ -116,6 +116,25 @@ Parameters lbfgsParameters()
 	return parameters;
 }
 
+// Whether the minimiser came to its own end; otherwise its line search failed.
+template<class Minimize>
+bool ended(const Minimize& minimize)
+{
+	try {
+		minimize();
+		return true;
+	}
+	catch (const Cancelled&) {
+		throw;
+	}
+	catch (const std::bad_alloc&) {
+		throw;
+	}
+	catch (const std::exception&) {
+		return false;
+	}
+}
+
 // A failed line search means a useless memory: begin again without it, as long as that helps.
 template<class Minimize>
 Minimum restarted(Guard& guard, const Minimize& minimize)
@@ -126,18 +145,8 @@ Minimum restarted(Guard& guard, const Minimize& minimize)
 		before                = guard.best.value;
 		Eigen::VectorXd x     = guard.best.x;
 		double          value = 0.0;
-		try {
-			minimize(x, value);
+		if (ended([&] { minimize(x, value); }))
 			break;
-		}
-		catch (const Cancelled&) {
-			throw;
-		}
-		catch (const std::bad_alloc&) {
-			throw;
-		}
-		catch (const std::exception&) {
-		}
 	}
 	return guard.best;
 }
@@ -271,6 +280,7 @@ Minimum minimizePolakRibiere(
 			-std::numeric_limits<double>::infinity());
 	}
 	catch (const StepFailed&) {
+		return guard.best; // of the steps before
 	}
 	return guard.best;
 }

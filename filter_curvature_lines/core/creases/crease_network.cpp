@@ -120,6 +120,7 @@ void Network::findCorners()
 		Vector3d corner;
 		while (list.size() > 1) {
 			std::vector<const CreasePoint*> vertices;
+			vertices.reserve(list.size());
 			for (const Index e : list)
 				vertices.push_back(&ends[e].vertex);
 			corner           = cornerOf(vertices);

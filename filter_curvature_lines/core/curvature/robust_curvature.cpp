@@ -51,7 +51,7 @@ struct Estimate {
 class PointEstimator {
 public:
 	CentreFits centreFits(Index i, const Eigen::Vector3d& normal);
-	Estimate estimate(Index i, CentreFits centre, double commonScale);
+	Estimate estimate(Index i, const CentreFits& centre, double commonScale);
 
 	static PointEstimator&
 	ofThisThread(const CloudIndex& index, const RobustCurvatureOptions& options)
@@ -199,7 +199,7 @@ Eigen::Vector3d PointEstimator::correctedNormal(const IrlsFit& fit) const
 	return (sum.x() * frame.u + sum.y() * frame.v + sum.z() * frame.n).normalized();
 }
 
-Estimate PointEstimator::estimate(Index i, CentreFits centre, double commonScale)
+Estimate PointEstimator::estimate(Index i, const CentreFits& centre, double commonScale)
 {
 	collectRegion(i, m_cloud->normals.col(i));
 	passGate(i, centre, commonScale);

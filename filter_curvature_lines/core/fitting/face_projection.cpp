@@ -77,7 +77,7 @@ Vector3d moveOntoFaces(const LocalFaces& faces)
 			corner.add(faces.face[0], side = b);
 		corner.add(faces.face[k], side);
 	}
-	const Vector3d own = -faces.face[0].height * faces.face[0].normal;
+	Vector3d own = -faces.face[0].height * faces.face[0].normal;
 	if (side == 0)
 		return own;
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "monomials.h"
 #include "sample_kernels.h"
 
 namespace curvature_lines {

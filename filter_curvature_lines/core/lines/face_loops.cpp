@@ -54,11 +54,12 @@ double cornerAngle(const HalfEdgeGraph& graph, Index in, Index out)
 // tangents.
 double bend(const HalfEdgeGraph& graph, Index h)
 {
-	const Index    back = HalfEdgeGraph::twin(h), from = graph.origin(h), to = graph.origin(back);
-	const auto&    edge   = graph.edge(h >> 1);
-	const Vector3d first  = edge.middle - graph.positions().col(from);
-	const Vector3d second = graph.positions().col(to) - edge.middle;
-	const Vector3d start = graph.tangent(h), end = -graph.tangent(back);
+	const Index     back = HalfEdgeGraph::twin(h), from = graph.origin(h), to = graph.origin(back);
+	const auto&     edge   = graph.edge(h >> 1);
+	const Vector3d  first  = edge.middle - graph.positions().col(from);
+	const Vector3d  second = graph.positions().col(to) - edge.middle;
+	const Vector3d& start  = graph.tangent(h);
+	const Vector3d  end    = -graph.tangent(back);
 	if (first.dot(start) <= 0.0 || second.dot(end) <= 0.0)
 		return signedAngle(start, end, edge.middleNormal);
 	return signedAngle(start, first, graph.normals().col(from)) +

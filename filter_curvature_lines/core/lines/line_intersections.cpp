@@ -81,11 +81,7 @@ public:
 		}
 	}
 
-	CGAL::Bbox_3 boundingBox(const Segment& s) const
-	{
-		return m_rims[2 * s.from].bbox() + m_rims[2 * s.from + 1].bbox() + m_rims[2 * s.to].bbox() +
-		       m_rims[2 * s.to + 1].bbox();
-	}
+	CGAL::Bbox_3 boundingBox(const Segment& s) const { return rimBox(s.from) + rimBox(s.to); }
 
 	// Appends where segment b passes through the strip of segment a.
 	void pierce(const Segment& a, const Segment& b, std::vector<LineCrossing>& crossings) const
@@ -104,6 +100,11 @@ public:
 private:
 	using Corners = std::array<Index, 3>;
 
+	CGAL::Bbox_3 rimBox(Index v) const
+	{
+		const std::size_t low = 2 * static_cast<std::size_t>(v);
+		return m_rims[low].bbox() + m_rims[low + 1].bbox();
+	}
 	static Point toPoint(const Vector3d& p) { return Point(p.x(), p.y(), p.z()); }
 	Vector3d rim(Index corner) const
 	{
@@ -253,6 +254,7 @@ intersectLines(const VoronoiCells& cells, const LineNetwork& lines, const Progre
 	result.crossings = findCrossings(lines, heights, progress.sub(0.3, 0.9, "Finding crossings"));
 	const std::size_t   found = result.crossings.size();
 	std::vector<double> reach;
+	reach.reserve(heights.size());
 	for (double height : heights)
 		reach.push_back(touchLength * height);
 	result.reordered = makeConsistent(lines, reach, result.crossings);

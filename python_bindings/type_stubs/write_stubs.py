@@ -92,7 +92,7 @@ def argument(parameter: ElementTree.Element) -> str:
         default = value
     elif kind == "RichFloat":
         default = repr(float(value))
-    return f'{parameter.attrib["name"]}: {TYPES[kind]} = {default}'
+    return f"{parameter.attrib['name']}: {TYPES[kind]} = {default}"
 
 
 def method(name: str, description: str, parameters: list[ElementTree.Element]) -> str:
@@ -101,7 +101,7 @@ def method(name: str, description: str, parameters: list[ElementTree.Element]) -
         lines += ["        *,", *(f"        {argument(parameter)}," for parameter in parameters)]
     lines += ["    ) -> dict[str, float]:", f'        """{description}.']
     for parameter in parameters:
-        text = f'{parameter.attrib["name"]}: {plain(parameter.attrib["tooltip"])}'
+        text = f"{parameter.attrib['name']}: {plain(parameter.attrib['tooltip'])}"
         lines += ["", *textwrap.wrap(text, WIDTH, initial_indent=" " * 8, subsequent_indent=" " * 12)]
     return "\n".join([*lines, '        """', ""])
 

@@ -46,9 +46,7 @@ PreparedCloud readCloud(const char* file)
 int project(const char* file, const char* output)
 {
 	const PreparedCloud             prepared = readCloud(file);
-	const NeighborSearch            search(prepared.cloud.positions);
-	const MinimumNeighborhoods      minimum = minimumNeighborhoods(prepared.cloud, search);
-	const MovingLeastSquaresSurface surface({prepared.cloud, search, minimum.spacing});
+	const MovingLeastSquaresSurface surface(CloudIndex(prepared.cloud));
 	const Eigen::Matrix3Xd moved = projectPoints(surface, prepared.cloud.positions).positions;
 	std::vector<double>    coordinates;
 	for (Eigen::Index i = 0; i < moved.cols(); ++i)
@@ -61,9 +59,8 @@ int project(const char* file, const char* output)
 int compare(const char* file, int width, int height, int runs)
 {
 	const PreparedCloud             prepared = readCloud(file);
-	const NeighborSearch            search(prepared.cloud.positions);
-	const MinimumNeighborhoods      minimum = minimumNeighborhoods(prepared.cloud, search);
-	const ControlPoints             control{prepared.cloud, search, minimum.spacing};
+	const CloudIndex                index(prepared.cloud);
+	const ControlPoints             control(index);
 	const CurvatureDrivenSurface    driven(control);
 	const MovingLeastSquaresSurface squares(control);
 	RayTracingOptions               options;
@@ -104,7 +101,7 @@ int compare(const char* file, int width, int height, int runs)
 		seen[0],
 		seen[1],
 		double(agree) / double(hits[0].size()),
-		difference / double(std::max<std::size_t>(both, 1)) / minimum.medianSpacing);
+		difference / double(std::max<std::size_t>(both, 1)) / index.minimum().medianSpacing);
 	return 0;
 }
 

@@ -1,5 +1,6 @@
 // M-Weighted Curvature (Euler Least Squares): core/m_weighted_curvature on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cloud_index.h"
 #include "curvature_field.h"
 #include "curvature_output.h"
 #include "filter_results.h"
@@ -61,20 +62,16 @@ void parameters(ParameterTable& table, Options& options)
 
 FilterResults apply(const FilterContext& context, const Options& options)
 {
-	MeshModel&                 layer  = currentLayer(context.document);
-	const LayerPoints          points = readOrientedPoints(layer);
-	FilterResults              results;
-	Stopwatch                  total;
-	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
-	const NeighborSearch       search(prepared.cloud.positions);
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(
-		prepared.cloud, search, {}, context.progress.sub(0.0, 0.4, "Finding neighborhoods"));
+	MeshModel&                  layer  = currentLayer(context.document);
+	const LayerPoints           points = readOrientedPoints(layer);
+	FilterResults               results;
+	Stopwatch                   total;
+	const PreparedCloud         prepared = prepareCloud(points.positions, points.normals);
+	const CloudIndex            index(prepared.cloud);
+	const MinimumNeighborhoods& minimum =
+		index.minimum(context.progress.sub(0.0, 0.4, "Finding neighborhoods"));
 	const CurvatureField field = mWeightedCurvature(
-		prepared.cloud,
-		search,
-		minimum,
-		options.estimate,
-		context.progress.sub(0.4, 1.0, "Estimating curvature"));
+		index, options.estimate, context.progress.sub(0.4, 1.0, "Estimating curvature"));
 	const RawCurvatures values = rawCurvatures(
 		points.normals,
 		prepared,

@@ -12,6 +12,7 @@
 #include <QImage>
 #include <QSaveFile>
 
+#include "cloud_index.h"
 #include "control_neighborhood.h"
 #include "curvature_colors.h"
 #include "curvature_driven_projection.h"
@@ -23,7 +24,6 @@
 #include "layer_conversion.h"
 #include "m_weighted_curvature.h"
 #include "moving_least_squares.h"
-#include "neighborhoods.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "point_set_surface.h"
@@ -169,12 +169,11 @@ Eigen::Vector3d colorOf(const CVertexO& vertex)
 }
 
 Eigen::Matrix3Xd colorsOf(
-	ColorBy                     colorBy,
-	const MeshModel&            layer,
-	const LayerPoints&          points,
-	const PreparedCloud&        prepared,
-	const ControlPoints&        control,
-	const MinimumNeighborhoods& minimum)
+	ColorBy              colorBy,
+	const MeshModel&     layer,
+	const LayerPoints&   points,
+	const PreparedCloud& prepared,
+	const CloudIndex&    index)
 {
 	const Index      n = prepared.cloud.size();
 	Eigen::Matrix3Xd colors(3, n);
@@ -183,7 +182,7 @@ Eigen::Matrix3Xd colorsOf(
 		colors.colwise() = plainColor;
 		break;
 	case ColorBy::Curvature: {
-		const CurvatureField field = mWeightedCurvature(prepared.cloud, control.search, minimum);
+		const CurvatureField field = mWeightedCurvature(index);
 		colors                     = curvatureColors(field.k1, field.k2, 0.5);
 		break;
 	}
@@ -243,14 +242,12 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	FilterResults     results;
 	Stopwatch         total, stage;
 	// Rays next to each other read points next to each other.
-	const PreparedCloud  prepared = inSpatialOrder(prepareCloud(points.positions, points.normals));
-	const Camera         camera   = cameraOf(options, prepared);
-	const NeighborSearch search(prepared.cloud.positions);
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(
-		prepared.cloud, search, {}, context.progress.sub(0.0, 0.2, "Finding neighborhoods"));
-	const ControlPoints    control{prepared.cloud, search, minimum.spacing};
-	const Eigen::Matrix3Xd colors =
-		colorsOf(options.colorBy, layer, points, prepared, control, minimum);
+	const PreparedCloud prepared = inSpatialOrder(prepareCloud(points.positions, points.normals));
+	const Camera        camera   = cameraOf(options, prepared);
+	const CloudIndex    index(prepared.cloud);
+	index.minimum(context.progress.sub(0.0, 0.2, "Finding neighborhoods"));
+	const ControlPoints    control(index);
+	const Eigen::Matrix3Xd colors = colorsOf(options.colorBy, layer, points, prepared, index);
 	const PictureLines lines = lineLayer == &layer ? PictureLines() : linesOf(*lineLayer, prepared);
 	std::unique_ptr<const PointSetSurface> surface;
 	if (options.surface == SurfaceKind::CurvatureDriven)

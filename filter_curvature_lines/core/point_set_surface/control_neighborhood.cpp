@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "block_size.h"
+#include "cloud_index.h"
 #include "gaussian_sums.h"
 #include "local_polynomial.h"
 #include "neighborhoods.h"
@@ -34,6 +36,23 @@ constexpr double farAway = 1e30; // coordinate of the points that fill up a bloc
 constexpr double opposing = -0.34;
 
 } // namespace
+
+ControlPoints::ControlPoints(const CloudIndex& points) :
+		ControlPoints(points, points.minimum().spacing)
+{
+}
+
+ControlPoints::ControlPoints(const CloudIndex& points, const std::vector<double>& spacings) :
+		index(points), cloud(index.cloud()), search(index.search()), spacing(spacings)
+{
+}
+
+ControlPoints::ControlPoints(
+	const PointCloud&          points,
+	const NeighborSearch&      ownSearch,
+	const std::vector<double>& spacings) : cloud(points), search(ownSearch), spacing(spacings)
+{
+}
 
 bool ControlNeighborhood::gather(const ControlPoints& control, const Vector3d& place, double reach)
 {

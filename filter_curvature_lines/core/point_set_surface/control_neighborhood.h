@@ -9,17 +9,30 @@
 
 #include <Eigen/Core>
 
+#include "cloud_index.h"
 #include "local_polynomial.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 
 namespace curvature_lines {
 
-// The points that define a surface. Cloud, search and spacing must outlive it.
+// The points that define a surface. Cheap to copy: it shares the index.
 struct ControlPoints {
+	// With the spacing of the minimum neighbourhoods, which are found now unless they were before.
+	ControlPoints(const CloudIndex& points);
+	// With another spacing (N, lengths), which must outlive it.
+	ControlPoints(const CloudIndex& points, const std::vector<double>& spacings);
+
+	// With a search and spacing of one's own, which must outlive it, as must the cloud.
+	ControlPoints(
+		const PointCloud&          points,
+		const NeighborSearch&      ownSearch,
+		const std::vector<double>& spacings);
+
+	CloudIndex                 index; // what the others are part of
 	const PointCloud&          cloud;
 	const NeighborSearch&      search;
-	const std::vector<double>& spacing; // per point, length
+	const std::vector<double>& spacing; // N, lengths
 };
 
 // What the points around a place say about the surface there, weighted by w = exp(-d^2 / h^2).

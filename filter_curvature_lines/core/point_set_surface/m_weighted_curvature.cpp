@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 
+#include "cloud_index.h"
 #include "curvature_field.h"
 #include "gaussian_sums.h"
 #include "local_polynomial.h"
@@ -103,14 +104,13 @@ double squaredWeight(double x, double h, const MWeightedCurvatureOptions& option
 } // namespace
 
 CurvatureField mWeightedCurvature(
-	const PointCloud&                cloud,
-	const NeighborSearch&            search,
-	const MinimumNeighborhoods&      minimum,
-	const MWeightedCurvatureOptions& options,
-	const Progress&                  progress)
+	const CloudIndex& index, const MWeightedCurvatureOptions& options, const Progress& progress)
 {
-	const Index    n = cloud.size();
-	CurvatureField field;
+	const PointCloud&           cloud   = index.cloud();
+	const NeighborSearch&       search  = index.search();
+	const MinimumNeighborhoods& minimum = index.minimum();
+	const Index                 n       = cloud.size();
+	CurvatureField              field;
 	for (auto* values :
 	     {&field.k1, &field.k2, &field.error, &field.radius, &field.confidence, &field.feature})
 		values->setZero(n);

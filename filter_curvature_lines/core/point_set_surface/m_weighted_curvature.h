@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 
+#include "cloud_index.h"
 #include "curvature_field.h"
 #include "local_polynomial.h"
-#include "neighborhoods.h"
 #include "point_cloud.h"
 #include "progress.h"
 
@@ -40,9 +40,7 @@ EulerFit fitEuler(LocalSamples<1>& samples);
 // Normals are used as they are. weights and confidence are those of the least squares, each row summing up
 // to 1; error is from the scatter of the directional curvatures; feature is 0.
 CurvatureField mWeightedCurvature(
-	const PointCloud&                cloud,
-	const NeighborSearch&            search,
-	const MinimumNeighborhoods&      minimum,
+	const CloudIndex&                index,
 	const MWeightedCurvatureOptions& options  = {},
 	const Progress&                  progress = {});
 

@@ -26,9 +26,8 @@ PointCloud planeCloud(int points)
 TEST(ControlNeighborhood, SumsAreThoseOfAllItsPoints)
 {
 	const PointCloud          cloud = planeCloud(1500);
-	const NeighborSearch      search(cloud.positions);
 	const std::vector<double> spacing(cloud.size(), 1.0 / std::sqrt(1500.0));
-	const ControlPoints       control{cloud, search, spacing};
+	const ControlPoints       control(cloud, spacing);
 	ControlNeighborhood       around;
 	const Vector3d            place(0.1, -0.05, 0.004);
 	ASSERT_TRUE(around.gather(control, place, 4.0));
@@ -61,15 +60,15 @@ TEST(ControlNeighborhood, SumsAreThoseOfAllItsPoints)
 TEST(ControlNeighborhood, HoldsTheClosestPointsWithinReach)
 {
 	const PointCloud          cloud = planeCloud(1500);
-	const NeighborSearch      search(cloud.positions);
 	const std::vector<double> spacing(cloud.size(), 1.0 / std::sqrt(1500.0));
-	const ControlPoints       control{cloud, search, spacing};
+	const ControlPoints       control(cloud, spacing);
 	ControlNeighborhood       around;
 	for (const double reach : {2.0, 4.0})
 		for (const Vector3d& place :
 		     {Vector3d(0, 0, 0), Vector3d(0.2, 0.3, 0.01), Vector3d(-0.4, 0, 0)}) {
 			ASSERT_TRUE(around.gather(control, place, reach));
-			const auto inside = search.within(place, reach * around.spacing()); // by distance
+			const auto inside =
+				control.search.within(place, reach * around.spacing()); // by distance
 			ASSERT_LE(around.size(), static_cast<int>(inside.size()));
 			EXPECT_GE(around.size(), std::min<int>(inside.size(), int(EIGEN_PI * reach * reach)));
 			double farthest = 0.0;
@@ -88,9 +87,8 @@ TEST(ControlNeighborhood, KeepsOpposingSheetsApart)
 	both.normals.resize(3, 3000);
 	both.positions << front.positions, front.positions.colwise() - Vector3d(0, 0, 0.02);
 	both.normals << front.normals, -front.normals;
-	const NeighborSearch      search(both.positions);
 	const std::vector<double> spacing(3000, 1.0 / std::sqrt(1500.0));
-	const ControlPoints       control{both, search, spacing};
+	const ControlPoints       control(both, spacing);
 	ControlNeighborhood       around;
 	for (const double z : {0.004, -0.024}) {
 		ASSERT_TRUE(around.gather(control, Vector3d(0.0, 0.0, z), 3.0));
@@ -105,9 +103,8 @@ TEST(ControlNeighborhood, KeepsOpposingSheetsApart)
 TEST(ControlNeighborhood, FarFromThePointsThereIsNoSurface)
 {
 	const PointCloud          cloud = planeCloud(1500);
-	const NeighborSearch      search(cloud.positions);
 	const std::vector<double> spacing(cloud.size(), 1.0 / std::sqrt(1500.0));
-	const ControlPoints       control{cloud, search, spacing};
+	const ControlPoints       control(cloud, spacing);
 	ControlNeighborhood       around;
 	EXPECT_TRUE(around.gather(control, Vector3d(0, 0, 2.5 * spacing[0]), 4.0));
 	EXPECT_FALSE(around.besideOthers());

@@ -19,19 +19,16 @@ using Diffusion = CurvatureDrivenOptions::Diffusion;
 
 struct Control {
 	Control(const Matrix3Xd& positions, const Matrix3Xd& normals) :
-			cloud{positions, normals}, search(cloud.positions),
-			minimum(minimumNeighborhoods(cloud, search))
+			index(PointCloud{positions, normals})
 	{
 	}
 	CurvatureDrivenSurface surface(const CurvatureDrivenOptions& options = {}) const
 	{
-		return {{cloud, search, minimum.spacing}, options};
+		return {index, options};
 	}
-	double spacing() const { return minimum.medianSpacing; }
+	double spacing() const { return index.minimum().medianSpacing; }
 
-	const PointCloud           cloud;
-	const NeighborSearch       search;
-	const MinimumNeighborhoods minimum;
+	const CloudIndex index;
 };
 
 samples::SampleCloud sampled(const std::string& name, int points, double noise = 0.0)
@@ -118,8 +115,7 @@ TEST(MovingLeastSquares, LandsOnACleanSurfaceAndStays)
 {
 	const auto                      torus = sampled("torus", 20000);
 	const Control                   control(torus.positions, torus.normals);
-	const MovingLeastSquaresSurface surface(
-		{control.cloud, control.search, control.minimum.spacing});
+	const MovingLeastSquaresSurface surface(control.index);
 	const Matrix3Xd queries = scattered(torus.positions.leftCols(2000), 0.5 * control.spacing());
 	const ProjectedPoints found = projectPoints(surface, queries);
 	EXPECT_EQ(std::count(found.projected.begin(), found.projected.end(), 1), 2000);
@@ -185,11 +181,10 @@ TEST(CurvatureDrivenProjection, InvariancesOfTheGeometry)
 	// With one spacing everywhere: slices of minimum neighbourhoods turn with the frame.
 	const std::vector<double> even(2000, control.spacing());
 	const PointCloud          turnedCloud{turn * shape.positions, turn * shape.normals};
-	const NeighborSearch      turnedSearch(turnedCloud.positions);
 	const ProjectedPoints     turned =
-		projectPoints(CurvatureDrivenSurface({turnedCloud, turnedSearch, even}), turn * queries);
+		projectPoints(CurvatureDrivenSurface(ControlPoints(turnedCloud, even)), turn * queries);
 	const ProjectedPoints straight =
-		projectPoints(CurvatureDrivenSurface({control.cloud, control.search, even}), queries);
+		projectPoints(CurvatureDrivenSurface(ControlPoints(control.index, even)), queries);
 	EXPECT_LT((turned.positions - turn * straight.positions).cwiseAbs().maxCoeff(), near);
 
 	const int threads = omp_get_max_threads();
@@ -202,7 +197,7 @@ TEST(ControlNeighborhood, SumsAreThoseOfTheFormula)
 {
 	const auto          torus = sampled("torus", 3000, 0.002);
 	const Control       control(torus.positions, torus.normals);
-	const ControlPoints points{control.cloud, control.search, control.minimum.spacing};
+	const ControlPoints points(control.index);
 	const Vector3d place = torus.positions.col(7) + 0.3 * control.spacing() * torus.normals.col(7);
 	ControlNeighborhood around;
 	ASSERT_TRUE(around.gather(points, place, 4.4));
@@ -253,9 +248,9 @@ TEST(ControlNeighborhood, UnevenCloudsGiveSomeNeighboursAndNotTooMany)
 		sparse.positions.colwise() - Vector3d(0, 0, 0.02);
 	normals.rightCols(1600) *= -1.0;
 	const Control       control(positions, normals);
-	const ControlPoints points{control.cloud, control.search, control.minimum.spacing};
+	const ControlPoints points(control.index);
 	ControlNeighborhood around;
-	for (Index i = 0; i < control.cloud.size(); i += 7) {
+	for (Index i = 0; i < control.index.size(); i += 7) {
 		ASSERT_TRUE(around.gather(points, i, 4.4));
 		EXPECT_GE(around.size(), 10);
 		EXPECT_LE(around.size(), 300);

@@ -34,9 +34,9 @@ EstimatedField estimate(
 {
 	EstimatedField result;
 	result.prepared = prepareCloud(positions, normals);
-	const NeighborSearch search(result.prepared.cloud.positions);
-	result.minimum = minimumNeighborhoods(result.prepared.cloud, search);
-	result.field   = mWeightedCurvature(result.prepared.cloud, search, result.minimum, options);
+	const CloudIndex index(result.prepared.cloud);
+	result.minimum = index.minimum();
+	result.field   = mWeightedCurvature(index, options);
 	return result;
 }
 
@@ -239,10 +239,8 @@ TEST(MWeightedCurvature, DegenerateCloudsGiveFiniteFrames)
 		for (const Weighting weighting :
 		     {Weighting::M, Weighting::Gaussian, Weighting::Unweighted}) {
 			MWeightedCurvatureOptions options;
-			options.weighting = weighting;
-			const NeighborSearch search(cloud.positions);
-			const CurvatureField f =
-				mWeightedCurvature(cloud, search, minimumNeighborhoods(cloud, search), options);
+			options.weighting      = weighting;
+			const CurvatureField f = mWeightedCurvature(cloud, options);
 			EXPECT_TRUE(f.k1.isZero() && f.k2.isZero() && f.error.isZero());
 			for (Index i = 0; i < f.size(); ++i) {
 				EXPECT_NEAR(f.d1.col(i).norm(), 1.0, 1e-9);

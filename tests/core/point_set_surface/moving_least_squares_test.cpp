@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
-#include "local_spacing.h"
 #include "moving_least_squares.h"
 #include "triangulated_surfaces.h"
 
@@ -14,6 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+// So that the places of the index's order are the points themselves.
 PointCloud inOrder(const PointCloud& points)
 {
 	const SpatialOrder order(points.positions);
@@ -21,16 +21,12 @@ PointCloud inOrder(const PointCloud& points)
 }
 
 struct Surface {
-	PointCloud                cloud;
-	NeighborSearch            search;
-	std::vector<double>       spacing;
+	CloudIndex                index;
 	ControlPoints             control;
 	MovingLeastSquaresSurface surface;
 
 	explicit Surface(const PointCloud& points) :
-			cloud(inOrder(points)), search(cloud.positions),
-			spacing(localSpacing(cloud.positions, search, SpatialOrder(cloud.positions))),
-			control{cloud, search, spacing}, surface(control)
+			index(inOrder(points)), control(index, index.spacing()), surface(control)
 	{
 	}
 };

@@ -50,10 +50,9 @@ TEST(ScatterAround, SpreadsOverTheAreaOfOnePoint)
 	request.seed                     = 1;
 	const auto                sample = samples::generate(request);
 	const PointCloud          cloud{sample.positions, sample.normals};
-	const NeighborSearch      search(cloud.positions);
 	const double              side = 1.0 / 30.0;
 	const std::vector<double> spacing(900, side);
-	const ControlPoints       control{cloud, search, spacing};
+	const ControlPoints       control(cloud, spacing);
 	const Eigen::Matrix3Xd    places = cloud.positions.leftCols(40);
 	for (const Index count : {1, 5, 20}) {
 		const Eigen::Matrix3Xd scattered = scatterAround(control, places, count);

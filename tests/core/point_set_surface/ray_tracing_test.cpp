@@ -19,11 +19,7 @@ using Eigen::Vector3d;
 
 struct Scene {
 	explicit Scene(const std::string& surface, int points) : Scene(cloudOf(surface, points)) {}
-	explicit Scene(PointCloud points) :
-			cloud(std::move(points)), search(cloud.positions),
-			minimum(minimumNeighborhoods(cloud, search))
-	{
-	}
+	explicit Scene(const PointCloud& points) : index(points) {}
 	static PointCloud cloudOf(const std::string& surface, int points)
 	{
 		samples::SampleRequest request;
@@ -33,11 +29,10 @@ struct Scene {
 		const auto sample = samples::generate(request);
 		return {sample.positions, sample.normals};
 	}
-	ControlPoints control() const { return {cloud, search, minimum.spacing}; }
+	const PointCloud& cloud() const { return index.cloud(); }
+	double spacing() const { return index.minimum().medianSpacing; }
 
-	const PointCloud           cloud;
-	const NeighborSearch       search;
-	const MinimumNeighborhoods minimum;
+	const CloudIndex index;
 };
 
 RayTracingOptions small(int width = 60, int height = 40)
@@ -62,12 +57,12 @@ TEST(Camera, IsUprightUnlessUpRunsAlongTheView)
 TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
 {
 	const Scene                     scene("sphere", 4000);
-	const CurvatureDrivenSurface    driven(scene.control());
-	const MovingLeastSquaresSurface squares(scene.control());
+	const CurvatureDrivenSurface    driven(scene.index);
+	const MovingLeastSquaresSurface squares(scene.index);
 	for (const PointSetSurface* surface :
 	     {static_cast<const PointSetSurface*>(&driven),
 	      static_cast<const PointSetSurface*>(&squares)}) {
-		const RayTracer tracer(*surface, scene.control(), {});
+		const RayTracer tracer(*surface, scene.index, {});
 		int             wrong = 0, rays = 0;
 		for (double x = -1.1; x <= 1.1; x += 0.1)
 			for (double y = -1.1; y <= 1.1; y += 0.1, ++rays) {
@@ -79,9 +74,7 @@ TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
 				if (!hit.exists() || square <= 0.0)
 					continue;
 				EXPECT_NEAR(
-					hit.depth,
-					5.0 - std::sqrt(square),
-					0.1 * scene.minimum.medianSpacing / std::sqrt(square));
+					hit.depth, 5.0 - std::sqrt(square), 0.1 * scene.spacing() / std::sqrt(square));
 				EXPECT_GT(hit.normal.dot(hit.position.normalized()), 0.999);
 			}
 		EXPECT_LE(wrong, rays / 200);
@@ -91,12 +84,12 @@ TEST(RayTracing, SphereIsMetWhereTheFormulaSays)
 TEST(RayTracing, BothSurfacesShowTheSamePicture)
 {
 	const Scene                     scene("torus", 5000);
-	const Camera                    camera = Camera::facing(scene.cloud, 1.5);
-	const CurvatureDrivenSurface    driven(scene.control());
-	const MovingLeastSquaresSurface squares(scene.control());
+	const Camera                    camera = Camera::facing(scene.cloud(), 1.5);
+	const CurvatureDrivenSurface    driven(scene.index);
+	const MovingLeastSquaresSurface squares(scene.index);
 	const auto                      options = small(120, 80);
-	const auto a      = traceImage(RayTracer(driven, scene.control(), options), camera, options);
-	const auto b      = traceImage(RayTracer(squares, scene.control(), options), camera, options);
+	const auto a      = traceImage(RayTracer(driven, scene.index, options), camera, options);
+	const auto b      = traceImage(RayTracer(squares, scene.index, options), camera, options);
 	int        differ = 0, both = 0, seen = 0;
 	double     depth = 0.0;
 	for (std::size_t p = 0; p < a.size(); ++p) {
@@ -109,22 +102,22 @@ TEST(RayTracing, BothSurfacesShowTheSamePicture)
 	}
 	EXPECT_GT(seen, 1500); // the camera sees it large
 	EXPECT_LE(differ, int(a.size()) / 200);
-	EXPECT_LT(depth / both, 0.2 * scene.minimum.medianSpacing);
+	EXPECT_LT(depth / both, 0.2 * scene.spacing());
 }
 
 TEST(RayTracing, CameraSeesAllPointsAndTheFrontOfAScan)
 {
 	const Scene  scene("bent_sheet", 1000);
-	const Camera camera = Camera::facing(scene.cloud, 1.5);
-	EXPECT_GT((camera.position - camera.target).dot(scene.cloud.normals.rowwise().mean()), 0.0);
+	const Camera camera = Camera::facing(scene.cloud(), 1.5);
+	EXPECT_GT((camera.position - camera.target).dot(scene.cloud().normals.rowwise().mean()), 0.0);
 	const auto options = small();
 	const Ray  middle  = rayThrough(camera, options, 30.0, 20.0);
 	EXPECT_LT(middle.direction.cross(camera.target - camera.position).norm(), 1e-9);
 	const Vector3d right = middle.direction.cross(camera.up).normalized(),
 				   up    = right.cross(middle.direction);
 	const double half    = std::tan(camera.fieldOfView * EIGEN_PI / 360.0);
-	for (Index i = 0; i < scene.cloud.size(); ++i) {
-		const Vector3d d = scene.cloud.positions.col(i) - camera.position;
+	for (Index i = 0; i < scene.cloud().size(); ++i) {
+		const Vector3d d = scene.cloud().positions.col(i) - camera.position;
 		EXPECT_LE(std::abs(d.dot(right) / d.dot(middle.direction)), 1.5 * half);
 		EXPECT_LE(std::abs(d.dot(up) / d.dot(middle.direction)), half);
 	}
@@ -133,10 +126,10 @@ TEST(RayTracing, CameraSeesAllPointsAndTheFrontOfAScan)
 TEST(RayTracing, OpenSurfaceEndsNearItsRim)
 {
 	const Scene                  scene("plane", 2000); // the unit square
-	const CurvatureDrivenSurface surface(scene.control());
-	const RayTracer              tracer(surface, scene.control(), {});
+	const CurvatureDrivenSurface surface(scene.index);
+	const RayTracer              tracer(surface, scene.index, {});
 	const Eigen::AlignedBox3d    box = samples::surface("plane").boundingBox();
-	const double                 s   = scene.minimum.medianSpacing;
+	const double                 s   = scene.spacing();
 	for (double along = 0.05; along < 1.0; along += 0.05) {
 		const Vector3d rim = box.min() + Vector3d(along * box.sizes().x(), 0, 0);
 		EXPECT_TRUE(tracer.trace({rim + Vector3d(0, 2 * s, 1), -Vector3d::UnitZ()}).exists());
@@ -154,10 +147,10 @@ TEST(RayTracing, OpenSurfaceEndsNearItsRim)
 TEST(RayTracing, RaysOfABlockMeetWhatTheyMeetAlone)
 {
 	const Scene                  scene("torus", 2000);
-	const CurvatureDrivenSurface surface(scene.control());
+	const CurvatureDrivenSurface surface(scene.index);
 	const auto                   options = small();
-	const RayTracer              tracer(surface, scene.control(), options);
-	const Camera                 camera = Camera::facing(scene.cloud, 1.5);
+	const RayTracer              tracer(surface, scene.index, options);
+	const Camera                 camera = Camera::facing(scene.cloud(), 1.5);
 	const auto                   hits   = traceImage(tracer, camera, options);
 	for (int y = 0; y < options.height; ++y)
 		for (int x = 0; x < options.width; ++x)
@@ -170,15 +163,15 @@ TEST(RayTracing, ClosedShapesWithSharpEdgesHideTheirBacks)
 {
 	for (const char* shape : {"cube", "torus"}) {
 		const Scene                     scene(shape, 6000);
-		const CurvatureDrivenSurface    driven(scene.control());
-		const MovingLeastSquaresSurface squares(scene.control());
+		const CurvatureDrivenSurface    driven(scene.index);
+		const MovingLeastSquaresSurface squares(scene.index);
 		const auto                      options = small(150, 100);
-		const Camera                    camera  = Camera::facing(scene.cloud, 1.5);
+		const Camera                    camera  = Camera::facing(scene.cloud(), 1.5);
 		for (const PointSetSurface* surface :
 		     {static_cast<const PointSetSurface*>(&driven),
 		      static_cast<const PointSetSurface*>(&squares)}) {
 			const auto hits =
-				traceImage(RayTracer(*surface, scene.control(), options), camera, options);
+				traceImage(RayTracer(*surface, scene.index, options), camera, options);
 			int seen = 0, backs = 0, holes = 0;
 			for (int y = 1; y + 1 < options.height; ++y)
 				for (int x = 1; x + 1 < options.width; ++x) {
@@ -238,8 +231,8 @@ TEST(RayTracing, ThinPlatesHaveNoHolesAndCleanOutlines)
 	const double spacing = 1.0 / across;
 	for (const double thickness : {2.0 * spacing, 4.0 * spacing}) {
 		const Scene                     scene(plate(thickness, across));
-		const CurvatureDrivenSurface    driven(scene.control());
-		const MovingLeastSquaresSurface squares(scene.control());
+		const CurvatureDrivenSurface    driven(scene.index);
+		const MovingLeastSquaresSurface squares(scene.index);
 		const Vector3d                  half(0.5, 0.5, 0.5 * thickness);
 		for (const PointSetSurface* surface :
 		     {static_cast<const PointSetSurface*>(&driven),
@@ -249,7 +242,7 @@ TEST(RayTracing, ThinPlatesHaveNoHolesAndCleanOutlines)
 			      Vector3d(0.2, 0.05, 1.0),
 			      Vector3d(0.4, 0.3, 1.0),
 			      Vector3d(1.0, 0.2, 0.1)}) {
-				const RayTracer    tracer(*surface, scene.control(), {});
+				const RayTracer    tracer(*surface, scene.index, {});
 				const Vector3d     direction = -tilt.normalized();
 				const TangentFrame frame(direction);
 				int                holes = 0, strays = 0, inside = 0;
@@ -275,10 +268,10 @@ TEST(RayTracing, ThinPlatesHaveNoHolesAndCleanOutlines)
 TEST(RayTracing, NumberOfThreadsChangesNothing)
 {
 	const Scene                  scene("torus", 1500);
-	const CurvatureDrivenSurface surface(scene.control());
+	const CurvatureDrivenSurface surface(scene.index);
 	const auto                   options = small();
-	const RayTracer              tracer(surface, scene.control(), options);
-	const Camera                 camera  = Camera::facing(scene.cloud, 1.5);
+	const RayTracer              tracer(surface, scene.index, options);
+	const Camera                 camera  = Camera::facing(scene.cloud(), 1.5);
 	const int                    threads = omp_get_max_threads();
 	omp_set_num_threads(1);
 	const auto one = traceImage(tracer, camera, options);
@@ -297,11 +290,11 @@ TEST(RayTracing, FewPointsAreNoSurfaceAndARowOfThemAStripAtMost)
 			cloud.positions.row(0).setLinSpaced(0.0, n > 1 ? 1.0 : 0.0);
 		cloud.normals.row(2).setOnes();
 		const Scene                  scene(cloud);
-		const CurvatureDrivenSurface surface(scene.control());
+		const CurvatureDrivenSurface surface(scene.index);
 		const auto                   options = small(16, 16);
-		const Camera                 camera  = Camera::facing(scene.cloud, 1.0);
+		const Camera                 camera  = Camera::facing(scene.cloud(), 1.0);
 		for (const RayHit& hit :
-		     traceImage(RayTracer(surface, scene.control(), options), camera, options)) {
+		     traceImage(RayTracer(surface, scene.index, options), camera, options)) {
 			EXPECT_TRUE(n == 30 || !hit.exists());
 			EXPECT_NEAR(hit.position.z(), 0.0, 1e-9);
 		}

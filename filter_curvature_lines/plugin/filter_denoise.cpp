@@ -74,22 +74,17 @@ void parameters(ParameterTable& table, DenoisingOptions& options)
 		advancedParameter);
 }
 
-FilterResults apply(const FilterContext& context, const DenoisingOptions& given)
+FilterResults apply(const FilterContext& context, const DenoisingOptions& options)
 {
-	DenoisingOptions    options = given;
-	MeshModel&          layer   = currentLayer(context.document);
-	const LayerPoints   points  = readOrientedPoints(layer);
+	MeshModel&          layer  = currentLayer(context.document);
+	const LayerPoints   points = readOrientedPoints(layer);
 	const Stopwatch     total;
-	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
-	options.robust.noise /= prepared.diagonal;
-	if (options.robust.noise > 0.5) // larger than the shape itself
-		throw MLException(
-			"parameter 'noise' is more than half the cloud's diagonal (" +
-			QString::number(prepared.diagonal) + ").");
-	const bool      published = options.method == DenoisingOptions::Method::Paper;
-	FilterResults   results;
-	DenoisingResult denoised;
-	Stopwatch       stage;
+	const PreparedCloud prepared  = prepareCloud(points.positions, points.normals);
+	const auto          robust    = inUnitFrame(options.robust, prepared);
+	const bool          published = options.method == DenoisingOptions::Method::Paper;
+	FilterResults       results;
+	DenoisingResult     denoised;
+	Stopwatch           stage;
 	if (published) {
 		const LayerCurvature curvature = context.cache.ofLayer(
 			layer, points, context.progress.sub(0.0, 0.5, "Estimating curvature"));
@@ -102,7 +97,7 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& given)
 			context.progress.sub(0.5, 1.0, "Denoising"));
 	}
 	else {
-		denoised = denoiseByProjection(prepared.cloud, options.robust, context.progress);
+		denoised = denoiseByProjection(prepared.cloud, robust, context.progress);
 	}
 	results.seconds("denoising", stage.lap());
 	writePositions(layer, points, prepared, denoised.positions);

@@ -77,13 +77,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 		findCreases(index, creaseOptions, context.progress.sub(0.85, 1.0, "Finding creases"));
 	results.seconds("creases", stage.lap());
 
-	double length = 0.0;
-	Index  closed = 0, concave = 0;
-	for (const CreaseCurve& curve : creases.curves) {
-		length += prepared.diagonal * curve.length();
-		closed += curve.closed;
-		concave += curve.concave();
-	}
+	const CreaseTotals totals = totalsOf(creases, prepared.diagonal);
 	results.count("vertices", 0);
 	results.count("edges", 0);
 	if (!creases.curves.empty()) { // smooth surfaces are nothing wrong
@@ -97,10 +91,10 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("points", points.size());
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
 	results.count("curves", static_cast<Index>(creases.curves.size()));
-	results.count("closed_curves", closed);
-	results.count("concave_curves", concave);
+	results.count("closed_curves", totals.closed);
+	results.count("concave_curves", totals.concave);
 	results.count("corners", static_cast<Index>(creases.corners.size()));
-	results.real("length", length);
+	results.real("length", totals.length);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -3,6 +3,7 @@
 #include "denoising.h"
 
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include <Eigen/Core>
@@ -17,6 +18,8 @@ namespace curvature_lines {
 
 namespace {
 
+constexpr double largestNoise = 0.5; // diagonals
+
 void measureMoves(const PointCloud& cloud, DenoisingResult& result)
 {
 	result.moves = (result.positions - cloud.positions).colwise().norm();
@@ -27,6 +30,20 @@ void measureMoves(const PointCloud& cloud, DenoisingResult& result)
 }
 
 } // namespace
+
+RobustDenoisingOptions
+inUnitFrame(const RobustDenoisingOptions& options, const PreparedCloud& prepared)
+{
+	RobustDenoisingOptions unit = options;
+	unit.noise /= prepared.diagonal;
+	if (unit.noise > largestNoise) {
+		std::ostringstream message;
+		message << "parameter 'noise' is more than half the cloud's diagonal (" << prepared.diagonal
+				<< ").";
+		throw InputError(message.str());
+	}
+	return unit;
+}
 
 DenoisingResult denoiseByProjection(
 	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress)

@@ -20,6 +20,11 @@ struct DenoisingOptions {
 	EnergyDenoisingOptions paper;
 };
 
+// These options with a noise in model units, for the cloud in its unit frame. Throws InputError where the noise is more
+// than half the cloud's diagonal: more than the shape itself.
+RobustDenoisingOptions
+inUnitFrame(const RobustDenoisingOptions& options, const PreparedCloud& prepared);
+
 struct DenoisingResult {
 	Eigen::Matrix3Xd positions, normals;           // 3 x N
 	Eigen::VectorXd  moves;                        // N, lengths

@@ -28,4 +28,15 @@ bool CreaseCurve::concave() const
 	return angle.sum() < 0.0;
 }
 
+CreaseTotals totalsOf(const Creases& creases, double unit)
+{
+	CreaseTotals totals;
+	for (const CreaseCurve& curve : creases.curves) {
+		totals.length += unit * curve.length();
+		totals.closed += curve.closed;
+		totals.concave += curve.concave();
+	}
+	return totals;
+}
+
 } // namespace curvature_lines

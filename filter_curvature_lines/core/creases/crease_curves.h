@@ -40,4 +40,13 @@ struct Creases {
 	std::vector<CreaseCorner> corners;
 };
 
+// What the curves are together.
+struct CreaseTotals {
+	double length = 0.0; // sum of theirs
+	Index  closed = 0, concave = 0;
+};
+
+// `unit`: how long a length of 1 is in the units wanted, such as PreparedCloud::diagonal for those of the model.
+CreaseTotals totalsOf(const Creases& creases, double unit = 1.0);
+
 } // namespace curvature_lines

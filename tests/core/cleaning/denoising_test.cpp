@@ -85,6 +85,38 @@ TEST(Denoising, ProgressReachesTheEndWithEither)
 	}
 }
 
+TEST(Denoising, NoiseIsTakenToTheUnitFrame)
+{
+	PreparedCloud prepared;
+	prepared.diagonal = 8.0;
+	RobustDenoisingOptions options;
+	options.noise     = 2.0;
+	options.radius    = 3.0; // in spacings: the same in every frame
+	const auto inUnit = inUnitFrame(options, prepared);
+	EXPECT_EQ(inUnit.noise, 0.25);
+	EXPECT_EQ(inUnit.radius, 3.0);
+	EXPECT_EQ(inUnit.sharpness, options.sharpness);
+	options.noise = 0.0; // automatic
+	EXPECT_EQ(inUnitFrame(options, prepared).noise, 0.0);
+}
+
+TEST(Denoising, NoiseOfMoreThanHalfTheDiagonalIsRefused)
+{
+	PreparedCloud prepared;
+	prepared.diagonal = 8.0;
+	RobustDenoisingOptions options;
+	options.noise = 4.0;
+	EXPECT_EQ(inUnitFrame(options, prepared).noise, 0.5);
+	options.noise = 4.001;
+	try {
+		inUnitFrame(options, prepared);
+		FAIL();
+	}
+	catch (const InputError& error) {
+		EXPECT_STREQ(error.what(), "parameter 'noise' is more than half the cloud's diagonal (8).");
+	}
+}
+
 TEST(Denoising, NoPointsDoNotMove)
 {
 	const PointCloud none{Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0)};

@@ -50,5 +50,29 @@ TEST(CreaseCurve, IsConcaveInTheMean)
 	EXPECT_TRUE(curve.concave());
 }
 
+TEST(CreaseTotals, AreThoseOfAllCurvesInTheUnitsWanted)
+{
+	CreaseCurve open = bent(), loop = bent();
+	open.positions.resize(3, 3);
+	open.positions << 0, 3, 3, 0, 0, 4, 0, 0, 0;
+	loop.positions      = open.positions;
+	loop.closed         = true;
+	loop.angle          = -loop.angle;
+	const Creases both  = {{open, loop}, {}};
+	const auto    total = totalsOf(both, 10.0);
+	EXPECT_DOUBLE_EQ(total.length, 10.0 * (7.0 + 12.0));
+	EXPECT_EQ(total.closed, 1);
+	EXPECT_EQ(total.concave, 1);
+	EXPECT_DOUBLE_EQ(totalsOf(both).length, 19.0);
+}
+
+TEST(CreaseTotals, OfNothingAreZero)
+{
+	const CreaseTotals none = totalsOf({});
+	EXPECT_EQ(none.length, 0.0);
+	EXPECT_EQ(none.closed, 0);
+	EXPECT_EQ(none.concave, 0);
+}
+
 } // namespace
 } // namespace curvature_lines

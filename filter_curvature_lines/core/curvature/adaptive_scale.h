@@ -4,7 +4,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,6 +12,7 @@
 #include "point_cloud.h"
 #include "point_subsets.h"
 #include "progress.h"
+#include "scale_mixture.h"
 #include "surface_anchors.h"
 
 namespace curvature_lines {
@@ -27,20 +27,12 @@ inline bool operator==(const AdaptiveScaleOptions& a, const AdaptiveScaleOptions
 	return members<2>(a) == members<2>(b);
 }
 
-// How much an estimate at one place relies on each scale.
-struct ScaleMixture {
-	// (index into ScaleSelection::scales, share), the largest first
-	std::vector<std::pair<int, double>> weights;
-	double                              variance = 0.0; // of the shape operator, 1/length^2
-};
-
 struct ScaleSelection {
-	std::vector<CurvatureScale> scales;            // all candidates
-	Eigen::Matrix3Xd            positions;         // where the mixtures hold
-	std::vector<ScaleMixture>   mixtures;          // one per position
-	double                      usualRadius = 0.0; // of the balls that hold just enough points
-	// Root mean square of the heights of points over a quadric in the smallest ball that reaches beyond the noise,
-	// a lower quantile over the cloud; a length. Without a correction for the unknowns of the fit.
+	std::vector<CurvatureScale> scales;    // all candidates
+	Eigen::Matrix3Xd            positions; // where the mixtures hold
+	std::vector<ScaleMixture>   mixtures;  // one per position
+	// scale_ladder.h; lengths.
+	double usualRadius     = 0.0;
 	double quadricResidual = 0.0;
 };
 

@@ -3,33 +3,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "adaptive_scale.h"
 
-#include <cmath>
+#include <cstddef>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "analytic_surfaces.h"
-#include "quantile.h"
-#include "shuffled_order.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
+#include "scale_mixture.h"
+#include "shuffled_cloud.h"
+#include "surface_anchors.h"
 
 namespace curvature_lines::test {
 namespace {
-
-// Shuffled, in the unit frame: the surface's diagonal is the unit of length.
-PointCloud cloudOf(const std::string& name, int points, double noise)
-{
-	samples::SampleRequest request;
-	request.surface                = name;
-	request.points                 = points;
-	request.noise                  = noise;
-	request.seed                   = 4;
-	const auto               cloud = samples::generate(request);
-	const std::vector<Index> order = shuffledOrder(cloud.positions);
-	return {
-		cloud.positions(Eigen::all, order) / samples::surface(name).diagonal(),
-		cloud.normals(Eigen::all, order)};
-}
 
 AdaptiveScaleOptions fewProbes()
 {
@@ -51,7 +38,7 @@ double meanRadius(const ScaleSelection& selection)
 
 TEST(AdaptiveScale, MixturesAreSharesOfTheCandidates)
 {
-	const PointSample    sample(cloudOf("torus", 3000, 0.003));
+	const PointSample    sample(shuffledCloud("torus", 3000, 0.003));
 	const ScaleSelection found = selectScales(sample, fewProbes());
 	ASSERT_GT(found.scales.size(), 3u);
 	ASSERT_EQ(found.positions.cols(), static_cast<Eigen::Index>(found.mixtures.size()));
@@ -81,7 +68,7 @@ TEST(AdaptiveScale, GrowsWithTheNoiseAndMeasuresIt)
 {
 	double radius = 0.0;
 	for (const double noise : {0.0005, 0.002, 0.008}) {
-		const PointSample    sample(cloudOf("torus", 4000, noise));
+		const PointSample    sample(shuffledCloud("torus", 4000, noise));
 		const ScaleSelection found = selectScales(sample, fewProbes());
 		EXPECT_GT(meanRadius(found), radius) << noise;
 		radius = meanRadius(found);
@@ -94,7 +81,7 @@ TEST(AdaptiveScale, GrowsWithTheNoiseAndMeasuresIt)
 
 TEST(AdaptiveScale, FollowsARigidMotionAndIsTheSameForAnyThreads)
 {
-	const PointCloud      cloud = cloudOf("ellipsoid", 2500, 0.002);
+	const PointCloud      cloud = shuffledCloud("ellipsoid", 2500, 0.002);
 	const Eigen::Matrix3d turn =
 		Eigen::AngleAxisd(0.9, Eigen::Vector3d(2.0, -1.0, 2.0).normalized()).toRotationMatrix();
 	const PointSample    still(cloud), turned({turn * cloud.positions, turn * cloud.normals});

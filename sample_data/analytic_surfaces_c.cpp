@@ -1,6 +1,7 @@
 // The C interface that analytic_surfaces.py calls. Coordinates are N rows of x, y, z.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 
 #include "analytic_surfaces.h"

@@ -1,6 +1,5 @@
 // Extract Sharp Feature Lines: core/creases on a denoised copy of a layer's points.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <utility>
 
 #include "cloud_index.h"

@@ -11,6 +11,7 @@
 #include "layer_conversion.h"
 #include "layer_curvature.h"
 #include "parameter_table.h"
+#include "raw_curvatures.h"
 #include "umbilics.h"
 
 namespace curvature_lines {

@@ -20,10 +20,7 @@ PARTS_OF_A_STAGE = {
     "cleaning/robust_outliers": "cleaning/outlier_rejection",
     "fitting/face_projection": "cleaning/robust_denoising",
     "fitting/point_deviation": "cleaning/robust_denoising",
-    "position_field/surface_graph": "position_field/surface_arrangement",
 }
-# Units that only a whole filter shows at work, with the test of the filter in this folder.
-TESTED_FROM_PYTHON = {"point_set_surface/surface_picture": "test_filters_point_set_surfaces"}
 # Units with next to nothing that could be wrong by itself: results without functions, interfaces, a few short loops.
 NOTHING_OF_THEIR_OWN = {
     "base/block_size",
@@ -181,11 +178,10 @@ def test_test_files_stand_where_their_units_do():
 
 def test_every_unit_has_a_test():
     tested = {f"{file.parent.name}/{file.stem.removesuffix('_test')}" for file in TESTS.rglob("*_test.cpp")}
-    listed = NOTHING_OF_THEIR_OWN | PARTS_OF_A_STAGE.keys() | TESTED_FROM_PYTHON.keys()
+    listed = NOTHING_OF_THEIR_OWN | PARTS_OF_A_STAGE.keys()
     assert not UNITS - tested - listed, "units without a test"
     assert not listed - UNITS, "listed, but not there"
     assert not listed & tested, "listed, but tested: take them off the list"
-    assert all((CHECKOUT / f"tests/python/{name}.py").exists() for name in TESTED_FROM_PYTHON.values())
     graph = uses(CORE)
     for unit, stage in PARTS_OF_A_STAGE.items():
         included = includes(TESTS / f"{stage}_test.cpp")[0]

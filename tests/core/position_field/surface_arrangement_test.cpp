@@ -3,17 +3,21 @@
 #include "surface_arrangement.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <tuple>
+#include <string>
+#include <vector>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "level_sets.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "scaffold.h"
+#include "surface_graph.h"
+#include "triangle_mesh.h"
 
-namespace curvature_lines {
+namespace curvature_lines::test {
 namespace {
 
 TriangleMesh scaffoldOf(const std::string& surface, int points = 1500)
@@ -29,44 +33,6 @@ TriangleMesh scaffoldOf(const std::string& surface, int points = 1500)
 SurfaceFeatures noFeatures(const TriangleMesh& mesh)
 {
 	return {std::vector<char>(mesh.edgeCount(), 0), std::vector<char>(mesh.vertexCount(), 0)};
-}
-
-// Every family of integer levels as chords; points of both families sorted together.
-SurfaceCurves levelSets(
-	const TriangleMesh&                                               mesh,
-	const std::vector<std::function<double(const Eigen::Vector3d&)>>& functions)
-{
-	SurfaceCurves curves;
-	curves.points.resize(mesh.edgeCount());
-	std::vector<std::vector<std::pair<int, int>>> names(mesh.edgeCount()); // family, level
-	for (Index e = 0; e < mesh.edgeCount(); ++e) {
-		std::vector<std::tuple<double, int, int>> found;
-		for (int f = 0; f < static_cast<int>(functions.size()); ++f) {
-			const double a = functions[f](mesh.vertices.col(mesh.edges()[e].from));
-			const double b = functions[f](mesh.vertices.col(mesh.edges()[e].to));
-			for (double q = std::ceil(std::min(a, b)); q < std::max(a, b); q += 1.0)
-				found.emplace_back((q - a) / (b - a), f, static_cast<int>(q));
-		}
-		std::sort(found.begin(), found.end());
-		for (const auto& [t, f, q] : found) {
-			curves.points[e].push_back({t, f});
-			names[e].emplace_back(f, q);
-		}
-	}
-	for (Index t = 0; t < mesh.triangleCount(); ++t) {
-		std::map<std::pair<int, int>, SurfaceCurves::End> open;
-		for (int c = 0; c < 3; ++c) {
-			const Index e = mesh.edgeOf(t, c);
-			for (Index p = 0; p < static_cast<Index>(names[e].size()); ++p) {
-				const auto other = open.find(names[e][p]);
-				if (other == open.end())
-					open[names[e][p]] = {e, p};
-				else
-					curves.chords.push_back({t, other->second, {e, p}});
-			}
-		}
-	}
-	return curves;
 }
 
 TEST(SurfaceArrangement, ParallelsAndMeridiansOfATorusAreAQuadMesh)
@@ -136,4 +102,4 @@ TEST(SurfaceArrangement, CornersOfRimsStay)
 }
 
 } // namespace
-} // namespace curvature_lines
+} // namespace curvature_lines::test

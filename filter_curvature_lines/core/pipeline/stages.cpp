@@ -28,6 +28,7 @@
 #include "position_field_mesh.h"
 #include "progress.h"
 #include "scaffold.h"
+#include "scaffold_sites.h"
 #include "umbilics.h"
 #include "voronoi_cells.h"
 

@@ -24,6 +24,7 @@
 #include "rim_fit.h"
 #include "rims.h"
 #include "scaffold.h"
+#include "scaffold_sites.h"
 #include "surface_arrangement.h"
 #include "surface_curves.h"
 #include "surface_graph.h"

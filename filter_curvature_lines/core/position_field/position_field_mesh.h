@@ -13,6 +13,7 @@
 #include "position_field.h"
 #include "progress.h"
 #include "scaffold.h"
+#include "scaffold_sites.h"
 
 namespace curvature_lines {
 

@@ -1,13 +1,11 @@
-// Thinning, crease samples, the advancing front, and its repair: manifold part, orientation, components
+// The advancing front over the sites, and its repair: manifold part, orientation, components
 // that are too small, holes the cloud does not have.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scaffold.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -19,9 +17,9 @@
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "point_subsets.h"
-#include "polygon_mesh.h"
 #include "progress.h"
 #include "quantile.h"
+#include "scaffold_sites.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
@@ -42,9 +40,6 @@ constexpr double evenSites = 1.5;
 // 1.7 faces the edges of a torus were .08, .15, .40, .80 degrees from the principal directions in a
 // prototype.
 constexpr double trianglesPerFace = 3.0;
-// Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
-// cuts off the corners where creases meet. By experiment on cubes (.7 over .75).
-constexpr double creaseStep = 0.93;
 // Clearance in noise units: the denoised points beside a crease are round. By experiment on cubes.
 constexpr double noiseClearance = 2.0;
 // Attempts with vertices farther and farther apart, and by how much; and others with a slightly different
@@ -75,107 +70,6 @@ double spacingOf(const PointSample& sample)
 	return medianInPlace(spacing);
 }
 
-// Creases as vertices and the edges between them.
-struct CreaseSamples {
-	std::vector<Vector3d>                points;
-	std::vector<std::pair<Index, Index>> edges;
-};
-
-CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step)
-{
-	CreaseSamples                          samples;
-	std::map<std::array<double, 3>, Index> ends; // lines that meet share the vertex
-	const auto                             endVertex = [&](const Vector3d& p) {
-        const auto found =
-            ends.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(samples.points.size()));
-        if (found.second)
-            samples.points.push_back(p);
-        return found.first->second;
-	};
-	for (const FeatureLine& crease : creases) {
-		std::vector<Vector3d> corners;
-		for (Eigen::Index k = 0; k < crease.points.cols(); ++k)
-			if (corners.empty() || corners.back() != Vector3d(crease.points.col(k)))
-				corners.push_back(crease.points.col(k));
-		if (crease.closed && corners.size() > 2 && corners.front() != corners.back())
-			corners.push_back(corners.front());
-		if (corners.size() < 2)
-			continue;
-		std::vector<double> arc = {0.0};
-		for (std::size_t k = 1; k < corners.size(); ++k)
-			arc.push_back(arc.back() + (corners[k] - corners[k - 1]).norm());
-		const Index least  = crease.closed ? 3 : 1;
-		const Index pieces = std::max(least, static_cast<Index>(std::ceil(arc.back() / step)));
-		Index       last   = endVertex(corners.front());
-		for (Index k = 1; k <= pieces; ++k) {
-			Index next = -1;
-			if (k == pieces) {
-				next = endVertex(corners.back());
-			}
-			else {
-				const double s = arc.back() * k / pieces;
-				const auto   i = std::clamp<std::ptrdiff_t>(
-                    std::upper_bound(arc.begin(), arc.end(), s) - arc.begin(), 1, arc.size() - 1);
-				const double t = (s - arc[i - 1]) / (arc[i] - arc[i - 1]);
-				next           = static_cast<Index>(samples.points.size());
-				samples.points.push_back(corners[i - 1] + t * (corners[i] - corners[i - 1]));
-			}
-			if (next != last)
-				samples.edges.emplace_back(last, next);
-			last = next;
-		}
-	}
-	return samples;
-}
-
-// What the triangulation is made from: points of the cloud (`source`), then samples of creases (-1).
-struct Sites {
-	Eigen::Matrix3Xd                     points, normals; // normals of crease samples are zero
-	std::vector<Index>                   source;
-	std::vector<std::pair<Index, Index>> creaseEdges;
-};
-
-Sites chooseSites(
-	const PointSample&              sample,
-	const std::vector<Index>&       order,
-	const std::vector<FeatureLine>& creases,
-	double                          distance,
-	const ScaffoldOptions&          options)
-{
-	const double clearance =
-		std::max(options.creaseClearance * distance, noiseClearance * options.noise);
-	const CreaseSamples    samples   = sampleCreases(creases, creaseStep * clearance);
-	const Eigen::Matrix3Xd onCreases = asColumns(samples.points);
-
-	std::vector<Index> chosen = thin(sample, distance);
-	if (onCreases.cols() > 0) {
-		const NeighborSearch search(onCreases);
-		chosen.erase(
-			std::remove_if(
-				chosen.begin(),
-				chosen.end(),
-				[&](Index i) {
-					return search.anyWithin(sample.cloud.positions.col(i), clearance);
-				}),
-			chosen.end());
-	}
-	Sites       sites;
-	const Index fromCloud = static_cast<Index>(chosen.size());
-	const Index count     = fromCloud + static_cast<Index>(onCreases.cols());
-	sites.points.resize(3, count);
-	sites.normals.setZero(3, count);
-	sites.source.assign(count, -1);
-	for (Index k = 0; k < fromCloud; ++k) {
-		sites.points.col(k)  = sample.cloud.positions.col(chosen[k]);
-		sites.normals.col(k) = sample.cloud.normals.col(chosen[k]);
-		sites.source[k]      = order[chosen[k]];
-	}
-	sites.points.rightCols(onCreases.cols()) = onCreases;
-	for (const auto& [a, b] : samples.edges)
-		sites.creaseEdges.emplace_back(fromCloud + a, fromCloud + b);
-	return sites;
-}
-
 // Distance of the neighbours around every site; `distance` in an evenly sampled cloud, more where it is
 // sparse.
 Eigen::VectorXd localDistances(const Eigen::Matrix3Xd& points, double distance)
@@ -195,7 +89,7 @@ Eigen::VectorXd localDistances(const Eigen::Matrix3Xd& points, double distance)
 // Turns every component to the side most of its normals are on.
 void orient(
 	const TriangleMesh&       mesh,
-	const Sites&              sites,
+	const ScaffoldSites&      sites,
 	const std::vector<Index>& component,
 	std::vector<Triangle>&    triangles)
 {
@@ -213,7 +107,7 @@ void orient(
 }
 
 // Fills a rim with triangles about its centre.
-void fillRim(const std::vector<Index>& rim, Sites& sites, std::vector<Triangle>& triangles)
+void fillRim(const std::vector<Index>& rim, ScaffoldSites& sites, std::vector<Triangle>& triangles)
 {
 	const auto n = static_cast<Index>(rim.size());
 	if (n == 3) {
@@ -243,7 +137,7 @@ double lengthOf(const std::vector<Index>& rim, const Eigen::Matrix3Xd& points)
 
 // Only vertices that a triangle uses.
 TriangleMesh
-compact(const Sites& sites, std::vector<Triangle> triangles, std::vector<Index>& nameOf)
+compact(const ScaffoldSites& sites, std::vector<Triangle> triangles, std::vector<Index>& nameOf)
 {
 	nameOf.assign(sites.points.cols(), -1);
 	for (const Triangle& t : triangles)
@@ -265,7 +159,7 @@ compact(const Sites& sites, std::vector<Triangle> triangles, std::vector<Index>&
 // The part of the front that is a manifold; vertices in which several fans meet are copied, in `sites` too.
 // Adds what had to be left out or copied to the defects.
 std::vector<Triangle>
-separated(const std::vector<Triangle>& front, Sites& sites, Scaffold& scaffold)
+separated(const std::vector<Triangle>& front, ScaffoldSites& sites, Scaffold& scaffold)
 {
 	const Index           originals = static_cast<Index>(sites.points.cols());
 	std::vector<Index>    copies;
@@ -318,7 +212,7 @@ void dropSmallComponents(
 
 void fillRims(
 	const ScaffoldOptions& options,
-	Sites&                 sites,
+	ScaffoldSites&         sites,
 	Scaffold&              scaffold,
 	std::vector<Triangle>& triangles)
 {
@@ -335,7 +229,7 @@ void fillRims(
 }
 
 // The mesh with the sources of its vertices and its creases.
-void finish(const Sites& sites, std::vector<Triangle> triangles, Scaffold& scaffold)
+void finish(const ScaffoldSites& sites, std::vector<Triangle> triangles, Scaffold& scaffold)
 {
 	std::vector<Index> nameOf;
 	scaffold.mesh = compact(sites, std::move(triangles), nameOf);
@@ -355,7 +249,7 @@ void finish(const Sites& sites, std::vector<Triangle> triangles, Scaffold& scaff
 }
 
 Scaffold
-triangulatedSites(Sites sites, double distance, double cell, const ScaffoldOptions& options)
+triangulatedSites(ScaffoldSites sites, double distance, double cell, const ScaffoldOptions& options)
 {
 	Scaffold scaffold;
 	scaffold.spacing = distance;
@@ -413,8 +307,10 @@ struct Attempts {
 
 	Scaffold at(double distance, const std::vector<FeatureLine>& creases) const
 	{
+		const double clearance =
+			std::max(options.creaseClearance * distance, noiseClearance * options.noise);
 		return triangulatedSites(
-			chooseSites(sample, order, creases, distance, options), distance, cell, options);
+			chooseSites(sample, order, creases, distance, clearance), distance, cell, options);
 	}
 
 	// From `distance` on coarser and coarser, until there are few defects: the one with the fewest flaws.

@@ -11,16 +11,10 @@
 #include "cloud_index.h"
 #include "point_cloud.h"
 #include "progress.h"
+#include "scaffold_sites.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
-
-// A crease of the surface. The ends are corners, or where the crease fades out; lines that meet end at the
-// same point.
-struct FeatureLine {
-	Eigen::Matrix3Xd points; // 3 x K
-	bool             closed = false;
-};
 
 struct ScaffoldOptions {
 	// of the quad mesh: triangles get about half as large as its faces; 0: any
@@ -32,7 +26,7 @@ struct ScaffoldOptions {
 	// 28 of 30 clouds).
 	double longestEdge     = 5.0;
 	double smallHole       = 10.0; // rims this short are filled; by experiment
-	double creaseClearance = 0.75; // cloud points so near a crease are left out; see creaseStep
+	double creaseClearance = 0.75; // cloud points so near a crease are left out
 	double closedRim = 0.0; // rims up to this length are closed as well, in edges of the quad mesh
 	double leastArea =
 		6.0;            // smaller components are dropped, in faces of the quad mesh; by experiment

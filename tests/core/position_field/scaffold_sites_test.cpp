@@ -1,0 +1,156 @@
+// Sites of the scaffold: even and dense in the cloud, away from creases, and on them at even distances.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaffold_sites.h"
+
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <gtest/gtest.h>
+
+#include "analytic_surfaces.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
+
+namespace curvature_lines::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// Independent points of the unit square: shuffled as they are.
+PointCloud square(Index points)
+{
+	samples::Random random(5, 0);
+	PointCloud      cloud;
+	cloud.positions.setZero(3, points);
+	cloud.normals = Vector3d::UnitZ().replicate(1, points);
+	for (Index i = 0; i < points; ++i)
+		cloud.positions.col(i).head<2>() << random.uniform(), random.uniform();
+	return cloud;
+}
+
+FeatureLine polyline(const std::vector<Vector3d>& corners, bool closed = false)
+{
+	FeatureLine line;
+	line.points.resize(3, static_cast<Eigen::Index>(corners.size()));
+	for (std::size_t k = 0; k < corners.size(); ++k)
+		line.points.col(static_cast<Eigen::Index>(k)) = corners[k];
+	line.closed = closed;
+	return line;
+}
+
+// Names that the points had before they were shuffled: any.
+std::vector<Index> namesOf(Index points)
+{
+	std::vector<Index> names(points);
+	std::iota(names.rbegin(), names.rend(), 100);
+	return names;
+}
+
+Index fromCloud(const ScaffoldSites& sites)
+{
+	Index count = 0;
+	while (count < static_cast<Index>(sites.source.size()) && sites.source[count] >= 0)
+		++count;
+	return count;
+}
+
+TEST(ScaffoldSites, AreEvenAndDense)
+{
+	const PointSample        sample(square(3000));
+	const std::vector<Index> names    = namesOf(3000);
+	const double             distance = 0.06;
+	const ScaffoldSites      sites    = chooseSites(sample, names, {}, distance, 0.01);
+	ASSERT_EQ(fromCloud(sites), static_cast<Index>(sites.points.cols()));
+	for (Eigen::Index a = 0; a < sites.points.cols(); ++a)
+		for (Eigen::Index b = 0; b < a; ++b)
+			EXPECT_GE((sites.points.col(a) - sites.points.col(b)).norm(), distance);
+	for (Index i = 0; i < sample.cloud.size(); ++i)
+		EXPECT_LE(
+			(sites.points.colwise() - sample.cloud.positions.col(i)).colwise().norm().minCoeff(),
+			distance);
+	for (Eigen::Index a = 0; a < sites.points.cols(); ++a) {
+		const Index i = 3099 - sites.source[a]; // names run backwards
+		EXPECT_EQ(sites.points.col(a), sample.cloud.positions.col(i));
+		EXPECT_EQ(sites.normals.col(a), sample.cloud.normals.col(i));
+	}
+	EXPECT_TRUE(sites.creaseEdges.empty());
+}
+
+TEST(ScaffoldSites, KeepClearOfCreases)
+{
+	const PointSample        sample(square(4000));
+	const std::vector<Index> names     = namesOf(4000);
+	const double             clearance = 0.05;
+	const FeatureLine        crease = polyline({{0.1, 0.5, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.9, 0.0}});
+	const ScaffoldSites      sites  = chooseSites(sample, names, {crease}, 0.04, clearance);
+	const Index first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
+	// .8 of length in pieces of .93 clearances at most
+	ASSERT_EQ(static_cast<Index>(sites.creaseEdges.size()), 18);
+	ASSERT_EQ(count - first, 19);
+	for (Index a = first; a < count; ++a) {
+		EXPECT_EQ(sites.source[a], -1);
+		EXPECT_EQ(sites.normals.col(a), Vector3d::Zero());
+		const Vector3d p = sites.points.col(a);
+		EXPECT_TRUE(std::abs(p.y() - 0.5) < 1e-12 || std::abs(p.x() - 0.5) < 1e-12);
+		for (Index b = 0; b < first; ++b)
+			EXPECT_GE((sites.points.col(b) - p).norm(), clearance);
+	}
+	for (const auto& [a, b] : sites.creaseEdges) {
+		EXPECT_GE(a, first);
+		EXPECT_GE(b, first);
+		EXPECT_LE((sites.points.col(a) - sites.points.col(b)).norm(), 0.8 / 18 + 1e-12);
+	}
+}
+
+TEST(ScaffoldSites, CreasesThatMeetShareASample)
+{
+	const PointSample        sample(square(100));
+	const std::vector<Index> names = namesOf(100);
+	const Vector3d           middle(0.5, 0.5, 0.0);
+	std::vector<FeatureLine> star;
+	for (int k = 0; k < 3; ++k) {
+		const double angle = 2.0 * k;
+		star.push_back(
+			polyline({middle, middle + 0.3 * Vector3d(std::cos(angle), std::sin(angle), 0.0)}));
+	}
+	const ScaffoldSites sites = chooseSites(sample, names, star, 0.1, 0.1);
+	const Index         first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
+	const Index         edges = static_cast<Index>(sites.creaseEdges.size());
+	EXPECT_EQ(count - first, edges + 1); // a tree
+	Index atMiddle = 0;
+	for (const auto& [a, b] : sites.creaseEdges)
+		atMiddle += (sites.points.col(a) - middle).norm() < 1e-12 ||
+		            (sites.points.col(b) - middle).norm() < 1e-12;
+	EXPECT_EQ(atMiddle, 3);
+}
+
+TEST(ScaffoldSites, ClosedCreasesAreLoops)
+{
+	const PointSample        sample(square(100));
+	const std::vector<Index> names = namesOf(100);
+	const double             h     = 0.01; // shorter than one step
+	for (const double size : {h, 0.6}) {
+		const FeatureLine   loop  = polyline({{0, 0, 1}, {size, 0, 1}, {0, size, 1}}, true);
+		const ScaffoldSites sites = chooseSites(sample, names, {loop}, 0.1, 0.1);
+		const Index first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
+		EXPECT_GE(count - first, 3);
+		ASSERT_EQ(count - first, static_cast<Index>(sites.creaseEdges.size()));
+		std::multiset<Index> ends;
+		for (const auto& [a, b] : sites.creaseEdges) {
+			ends.insert(a);
+			ends.insert(b);
+		}
+		for (Index a = first; a < count; ++a)
+			EXPECT_EQ(ends.count(a), 2u);
+	}
+	// A line of one point is none.
+	EXPECT_TRUE(chooseSites(sample, names, {polyline({{0, 0, 1}, {0, 0, 1}})}, 0.1, 0.1)
+	                .creaseEdges.empty());
+}
+
+} // namespace
+} // namespace curvature_lines::test

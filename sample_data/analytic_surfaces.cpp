@@ -3,7 +3,12 @@
 #include "surface_families.h"
 
 #include <map>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analytic_surfaces.h"
 
 namespace curvature_lines::samples {
 namespace {

@@ -3,7 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface_families.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <memory>
+
+#include "analytic_surfaces.h"
 
 namespace curvature_lines::samples {
 namespace {

@@ -2,8 +2,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface_families.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "analytic_surfaces.h"
 
 namespace curvature_lines::samples {
 namespace {

@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface_families.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+
+#include "analytic_surfaces.h"
 
 namespace curvature_lines::samples {
 namespace {
@@ -123,10 +129,11 @@ public:
 		const double top      = h - std::abs(q.z());
 		double       distance = infinity;
 		for (std::size_t k = 0; k < outline.size(); ++k) {
-			const Vector2d a = outline[k], d = outline[(k + 1) % outline.size()] - a;
-			const Vector2d p = q.head<2>() - a;
-			const double   t = std::clamp(p.dot(d) / d.squaredNorm(), 0.0, 1.0);
-			distance         = std::min({distance, p.norm(), std::hypot((p - t * d).norm(), top)});
+			const Vector2d& a = outline[k];
+			const Vector2d  d = outline[(k + 1) % outline.size()] - a;
+			const Vector2d  p = q.head<2>() - a;
+			const double    t = std::clamp(p.dot(d) / d.squaredNorm(), 0.0, 1.0);
+			distance          = std::min({distance, p.norm(), std::hypot((p - t * d).norm(), top)});
 		}
 		return distance;
 	}

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "box_minimization.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 namespace {

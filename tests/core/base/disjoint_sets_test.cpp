@@ -1,11 +1,14 @@
 // Sets that are joined, against relabelling every element.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <numeric>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "disjoint_sets.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -1,6 +1,7 @@
 // Preparation of raw clouds: what is dropped, merged and scaled, and what is refused.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 

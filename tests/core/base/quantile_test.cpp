@@ -1,7 +1,9 @@
 // Order statistics against sorting.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cstddef>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 

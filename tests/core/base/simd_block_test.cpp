@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "block_size.h"
+
 namespace curvature_lines {
 namespace {
 

@@ -6,6 +6,10 @@
 
 #include "analytic_surfaces.h"
 #include "denoising.h"
+#include "energy_denoising.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "robust_denoising.h"
 
 namespace curvature_lines::test {
 namespace {

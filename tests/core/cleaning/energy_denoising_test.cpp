@@ -1,6 +1,10 @@
 // The denoising energy against its definition and finite differences, and the noise it removes.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -8,6 +12,9 @@
 
 #include "analytic_surfaces.h"
 #include "energy_denoising.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_curvature.h"
 
 namespace curvature_lines::test {

@@ -1,8 +1,11 @@
 // Votes about a point that are made up by hand, and what they come to.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "outlier_ballot.h"
+#include "outlier_voter.h"
 
 namespace curvature_lines {
 namespace {

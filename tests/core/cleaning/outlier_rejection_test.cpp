@@ -6,11 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include "analytic_surfaces.h"
+#include "curvature_field.h"
+#include "outlier_result.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_outliers.h"
 
 namespace curvature_lines::test {

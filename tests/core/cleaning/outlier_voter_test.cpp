@@ -1,13 +1,15 @@
 // Voters on exact and noisy surfaces among outliers: the surface of the majority, and the part of it they know.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "neighborhoods.h"
 #include "outlier_voter.h"
+#include "point_cloud.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines {

@@ -2,8 +2,13 @@
 // place and size of the cloud.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -12,6 +17,8 @@
 
 #include "analytic_surfaces.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "robust_denoising.h"
 
 namespace curvature_lines::test {

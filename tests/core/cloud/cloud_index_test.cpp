@@ -11,7 +11,11 @@
 #include "cloud_index.h"
 #include "gate_normals.h"
 #include "local_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "shuffled_order.h"
+#include "spatial_order.h"
 
 namespace curvature_lines::test {
 namespace {

@@ -3,11 +3,15 @@
 #include "even_sample.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -4,6 +4,8 @@
 
 #include "analytic_surfaces.h"
 #include "gate_normals.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

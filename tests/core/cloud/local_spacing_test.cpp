@@ -1,11 +1,18 @@
 // Spacing of grids and of clouds whose density is known, and values spread over a cloud.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "local_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "spatial_order.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines::test {
 namespace {

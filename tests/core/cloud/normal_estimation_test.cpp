@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "normal_estimation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 
 using namespace curvature_lines;
 

@@ -1,13 +1,18 @@
 // The order of the points that subsets are drawn from: a permutation that belongs to the points.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines {

@@ -3,7 +3,10 @@
 #include "voronoi_cells.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <libqhullcpp/Qhull.h>
@@ -11,6 +14,7 @@
 #include <libqhullcpp/QhullVertexSet.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

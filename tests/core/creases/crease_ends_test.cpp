@@ -1,9 +1,15 @@
 // Ends of traces, and gaps that are joined or are not.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "crease_ends.h"
-#include "exact_creases.h"
+#include "crease_points.h"
+#include "crease_tracing.h"
 
 namespace curvature_lines {
 namespace {

@@ -3,11 +3,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
+#include "crease_curves.h"
 #include "crease_network.h"
+#include "crease_points.h"
+#include "crease_tracing.h"
 #include "exact_creases.h"
+#include "point_cloud.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

@@ -1,9 +1,17 @@
 // Crease points of exact faces: on the edge, with its faces and angle; none on smooth surfaces and single sheets.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "crease_points.h"
+#include "local_surface.h"
+#include "neighborhoods.h"
 
 namespace curvature_lines {
 namespace {

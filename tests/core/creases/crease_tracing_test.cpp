@@ -1,7 +1,13 @@
 // Curves through exact crease points: on the curve, along it, once each, and only as far as there are points.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
+#include "crease_points.h"
 #include "crease_tracing.h"
 #include "exact_creases.h"
 

@@ -3,14 +3,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
+#include "crease_curves.h"
 #include "creases.h"
 #include "estimated_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "robust_denoising.h"
 
 namespace curvature_lines::test {

@@ -5,11 +5,19 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
+#include "curvature_estimate.h"
 #include "estimated_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 #include "umbilics.h"
 
 namespace curvature_lines::test {

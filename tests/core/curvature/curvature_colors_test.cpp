@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature_colors.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 using namespace curvature_lines;

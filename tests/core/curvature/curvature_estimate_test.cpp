@@ -1,15 +1,20 @@
 // Which options ask for the same estimate, the choice between the two estimates, and directions turned into other tangent planes.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "curvature_estimate.h"
+#include "curvature_field.h"
 #include "exact_field.h"
-#include "triangulated_surfaces.h"
+#include "point_cloud.h"
+#include "robust_curvature.h"
 
 namespace curvature_lines {
 namespace {

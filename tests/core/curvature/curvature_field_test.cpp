@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "curvature_field.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

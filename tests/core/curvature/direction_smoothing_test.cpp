@@ -1,13 +1,21 @@
 // The direction energy against finite differences and its definition, and what smoothing does to noisy fields.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
 #include "direction_smoothing.h"
 #include "exact_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines::test {
 namespace {

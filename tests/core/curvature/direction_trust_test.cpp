@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "direction_trust.h"
 #include "exact_field.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

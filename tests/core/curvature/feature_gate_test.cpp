@@ -1,12 +1,17 @@
 // Which points of a region belong to the middle one's face: all of a smooth surface, one side of an edge; and normals
 // that the points around set right.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "feature_gate.h"
+#include "neighborhoods.h"
+#include "operating_region.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "irls.h"
+#include "point_cloud.h"
 #include "robust_kernel.h"
 
 namespace curvature_lines {

@@ -1,13 +1,16 @@
 // Regions against brute force: their points, coordinates in radii, pairs and the prior weights of these.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "irls.h"
+#include "neighborhoods.h"
 #include "operating_region.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

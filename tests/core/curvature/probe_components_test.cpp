@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 #include "probe_components.h"
 
 namespace curvature_lines {

@@ -4,9 +4,13 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -4,13 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
+#include "curvature_field.h"
 #include "estimated_field.h"
 #include "irls.h"
+#include "neighborhoods.h"
 #include "operating_region.h"
+#include "point_cloud.h"
+#include "robust_curvature.h"
 #include "robust_kernel.h"
 
 namespace curvature_lines::test {

@@ -1,11 +1,17 @@
 // Projection of free points and interpolation of normals and tensors, against exact surfaces.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "exact_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "surface_projection.h"
 
 namespace curvature_lines::test {

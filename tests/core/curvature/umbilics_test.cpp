@@ -1,13 +1,18 @@
 // Umbilic points, regions and their directions on exact surfaces.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "exact_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "umbilics.h"
 
 namespace curvature_lines::test {

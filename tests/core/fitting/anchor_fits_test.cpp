@@ -3,11 +3,18 @@
 #include "anchor_fits.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "local_surface.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines::test {

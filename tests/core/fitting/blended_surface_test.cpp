@@ -5,12 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include "analytic_surfaces.h"
+#include "covering_patch.h"
+#include "point_cloud.h"
+#include "spatial_order.h"
 
 namespace curvature_lines::test {
 namespace {

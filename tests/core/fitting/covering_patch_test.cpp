@@ -3,10 +3,14 @@
 #include "covering_patch.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
+#include "spatial_order.h"
 
 namespace curvature_lines::test {
 namespace {

@@ -1,5 +1,6 @@
 // The polynomial fit against a QR decomposition of its design matrix, and what it does without enough data.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/QR>
@@ -7,6 +8,7 @@
 
 #include "analytic_surfaces.h"
 #include "local_polynomial.h"
+#include "monomials.h"
 
 namespace curvature_lines {
 namespace {

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines::test {
 namespace {

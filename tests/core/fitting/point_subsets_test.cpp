@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 #include "quantile.h"
 #include "shuffled_order.h"
 

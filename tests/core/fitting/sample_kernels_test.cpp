@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sample_kernels.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "block_size.h"
 #include "local_polynomial.h"
 #include "local_surface.h"
 #include "neighborhoods.h"
 #include "sample_kernels_simd.h"
+#include "simd_block.h"
 
 namespace curvature_lines {
 namespace {
@@ -24,7 +26,8 @@ template<class T>
 bool sameBits(const T& a, const T& b)
 {
 	static_assert(std::is_trivially_copyable_v<T>);
-	return std::memcmp(&a, &b, sizeof(T)) == 0;
+	const auto* p = reinterpret_cast<const unsigned char*>(&a);
+	return std::equal(p, p + sizeof(T), reinterpret_cast<const unsigned char*>(&b));
 }
 
 template<int Values>

@@ -3,11 +3,16 @@
 #include "surface_anchors.h"
 
 #include <algorithm>
-#include <memory>
+#include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "anchor_fits.h"
+#include "point_cloud.h"
+#include "point_subsets.h"
 #include "quantile.h"
 #include "shuffled_order.h"
 

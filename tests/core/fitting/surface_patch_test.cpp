@@ -3,12 +3,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface_patch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "local_polynomial.h"
 
 namespace curvature_lines::test {
 namespace {

@@ -1,7 +1,10 @@
 // Lengths, segments and points of open, closed and very short polylines.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "line_network.h"
 #include "line_networks.h"
 
 namespace curvature_lines::tests {

@@ -2,12 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crossing_order.h"
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
+#include "line_crossing.h"
 #include "line_intersections.h"
+#include "line_network.h"
 #include "line_networks.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

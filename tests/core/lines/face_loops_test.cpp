@@ -3,11 +3,16 @@
 #include "face_loops.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "half_edge_graph.h"
 #include "line_networks.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

@@ -1,10 +1,17 @@
 // Arrangements of lines whose crossings are known: grids in the plane, circles of a torus, great circles of a
 // sphere.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdint>
+
 #include <gtest/gtest.h>
 
+#include "half_edge_graph.h"
 #include "line_arrangement.h"
+#include "line_intersections.h"
+#include "line_network.h"
 #include "line_networks.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

@@ -10,7 +10,6 @@
 #include <deque>
 #include <limits>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>

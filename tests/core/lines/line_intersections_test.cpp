@@ -3,13 +3,23 @@
 #include "line_intersections.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
+#include "line_crossing.h"
+#include "line_network.h"
 #include "line_networks.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "line_registry.h"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "exact_field.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

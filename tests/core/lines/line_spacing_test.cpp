@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "exact_field.h"
 #include "line_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -3,13 +3,25 @@
 #include "line_tracing.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
 #include "exact_field.h"
 #include "line_intersections.h"
+#include "line_network.h"
+#include "line_spacing.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "progress.h"
+#include "umbilics.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

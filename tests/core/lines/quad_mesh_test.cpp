@@ -3,12 +3,19 @@
 #include "quad_mesh.h"
 
 #include <cmath>
-#include <numeric>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
+#include "line_network.h"
 #include "line_networks.h"
+#include "mesh_finishing.h"
+#include "point_cloud.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

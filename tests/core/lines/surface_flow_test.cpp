@@ -5,8 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "exact_field.h"
+#include "point_cloud.h"
 #include "surface_flow.h"
+#include "umbilics.h"
+#include "voronoi_cells.h"
 
 namespace curvature_lines {
 namespace {

@@ -1,9 +1,15 @@
 // Graphs put together vertex by vertex: half-edges, straight edges between vertices, and both embeddings.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstddef>
+#include <utility>
+#include <vector>
+
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "graph_builder.h"
+#include "half_edge_graph.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_finishing.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 namespace {

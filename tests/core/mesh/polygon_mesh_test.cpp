@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "polygon_mesh.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

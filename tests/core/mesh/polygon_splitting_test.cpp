@@ -4,10 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
+
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 namespace {

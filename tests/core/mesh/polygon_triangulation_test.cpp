@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 namespace {

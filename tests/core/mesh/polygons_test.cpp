@@ -1,7 +1,14 @@
 // Polygons over growing arrays of vertices: disks with plain borders and with borders that touch themselves.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "polygons.h"
 
 namespace curvature_lines {

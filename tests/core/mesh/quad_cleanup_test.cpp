@@ -5,9 +5,12 @@
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "rim_cleanup.h"
 
 namespace curvature_lines {

@@ -1,7 +1,13 @@
 // Triangles at the rim of a strip: those with a short side vanish, and only where nothing is at stake.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 #include "rim_cleanup.h"
 
 namespace curvature_lines {

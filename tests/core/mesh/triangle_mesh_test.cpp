@@ -2,12 +2,19 @@
 // part of arbitrary sets of triangles.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
 #include <numeric>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "disjoint_sets.h"
+#include "point_cloud.h"
 #include "triangle_mesh.h"
 #include "triangulated_surfaces.h"
 

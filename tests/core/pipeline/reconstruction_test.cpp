@@ -3,11 +3,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include "analytic_surfaces.h"
+#include "curvature_estimate.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
+#include "progress.h"
 #include "reconstruction.h"
 #include "stages.h"
 

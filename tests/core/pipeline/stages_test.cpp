@@ -1,10 +1,14 @@
 // Each stage by itself: what it takes over from the value before, and what it refuses.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "cloud_index.h"
+#include "curvature_estimate.h"
+#include "point_cloud.h"
 #include "stages.h"
 
 namespace curvature_lines::test {

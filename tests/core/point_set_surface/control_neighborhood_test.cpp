@@ -1,11 +1,14 @@
 // Sums over control points against brute force, sheets that are kept apart, and places without a surface.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
 #include "control_neighborhood.h"
+#include "point_cloud.h"
 
 namespace curvature_lines {
 namespace {

@@ -2,13 +2,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
+#include "control_neighborhood.h"
 #include "curvature_driven_projection.h"
 #include "estimated_field.h"
+#include "local_polynomial.h"
 #include "moving_least_squares.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
 
 namespace curvature_lines::test {
 namespace {

@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gaussian_sums.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "block_size.h"
 #include "gaussian_sums_simd.h"
 #include "local_polynomial.h"
+#include "sample_kernels.h"
+#include "simd_block.h"
 
 namespace curvature_lines {
 namespace {
@@ -21,7 +24,8 @@ using Eigen::Vector3d;
 template<class T>
 bool sameBits(const T& a, const T& b)
 {
-	return std::memcmp(&a, &b, sizeof(T)) == 0;
+	const auto* p = reinterpret_cast<const unsigned char*>(&a);
+	return std::equal(p, p + sizeof(T), reinterpret_cast<const unsigned char*>(&b));
 }
 
 constexpr double sharpness = 2.5, farAway = 1e30;

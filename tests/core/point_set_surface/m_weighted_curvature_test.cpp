@@ -1,14 +1,19 @@
 // M-weighted curvature: the weight's formula, the least squares against an independent solver, exact surfaces,
 // the noise figure of T06, the invariances that follow from the geometry, and degenerate clouds.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
+#include "cloud_index.h"
 #include "estimated_field.h"
+#include "local_polynomial.h"
 #include "m_weighted_curvature.h"
+#include "point_cloud.h"
 
 namespace curvature_lines::test {
 namespace {

@@ -1,11 +1,18 @@
 // The moving-least-squares surface of exact clouds: planes exactly, spheres closely, and a projection that stays.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "cloud_index.h"
+#include "control_neighborhood.h"
 #include "moving_least_squares.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
+#include "spatial_order.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

@@ -1,10 +1,15 @@
 // Local quadrics as surfaces, places scattered around points, and how far projection moved points.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "control_neighborhood.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 #include "point_set_surface.h"
 
 namespace curvature_lines {

@@ -1,14 +1,19 @@
 // Ray tracing of point-set surfaces against exact surfaces; silhouettes, boundaries, cameras, threads, bad input.
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "analytic_surfaces.h"
 #include "curvature_driven_projection.h"
-#include "estimated_field.h"
 #include "moving_least_squares.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "point_set_surface.h"
 #include "ray_tracing.h"
 
 namespace curvature_lines::test {

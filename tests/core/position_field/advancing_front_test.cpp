@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <list>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 
 namespace curvature_lines {
 namespace {

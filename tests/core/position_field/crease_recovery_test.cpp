@@ -1,8 +1,13 @@
 // Creases that are put into triangulations: missing points, crossing edges, and what is there already.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "crease_recovery.h"
+#include "point_cloud.h"
+#include "triangle_mesh.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

@@ -1,12 +1,23 @@
 // Crosses on exact triangulations: they keep the principal directions they are given, continue them where nothing is
 // known, and their singular points add up to the Euler characteristic.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "cross_field.h"
+#include "curvature_field.h"
 #include "exact_field.h"
+#include "point_cloud.h"
+#include "scaffold.h"
+#include "triangle_mesh.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

@@ -1,10 +1,18 @@
 // What rims and creases ask of crosses and phases, on surfaces where it is known.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "constant_crosses.h"
+#include "cross_field.h"
 #include "exact_field.h"
 #include "feature_alignment.h"
+#include "point_cloud.h"
+#include "position_field.h"
+#include "rims.h"
+#include "triangulated_surfaces.h"
 
 namespace curvature_lines {
 namespace {

@@ -4,6 +4,7 @@
 #include "frontier.h"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 

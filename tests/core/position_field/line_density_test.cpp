@@ -1,11 +1,14 @@
 // Densities of lines with a known count of vertices, their anisotropy, and the gradients of one triangle.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "constant_crosses.h"
 #include "line_density.h"
+#include "point_cloud.h"
+#include "triangulated_surfaces.h"
 
 namespace curvature_lines {
 namespace {

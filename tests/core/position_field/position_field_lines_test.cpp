@@ -4,10 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include "analytic_surfaces.h"
 #include "constant_crosses.h"
+#include "curvature_field.h"
 #include "exact_field.h"
+#include "line_density.h"
+#include "line_network.h"
 #include "line_networks.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "position_field.h"
 #include "position_field_lines.h"
+#include "surface_curves.h"
+#include "triangulated_surfaces.h"
 
 namespace curvature_lines {
 namespace {

@@ -2,15 +2,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "position_field_mesh.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include "analytic_surfaces.h"
+#include "curvature_estimate.h"
 #include "estimated_field.h"
 #include "exact_field.h"
+#include "line_network.h"
 #include "line_networks.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
 
 namespace curvature_lines {
 namespace {

@@ -1,12 +1,18 @@
 // Phases on exact surfaces: evenly spaced lines, whole numbers where they are pinned and between neighbours, and lines
 // that end exactly where the density asks for fewer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "constant_crosses.h"
+#include "cross_field.h"
+#include "line_density.h"
+#include "point_cloud.h"
 #include "position_field.h"
+#include "triangle_mesh.h"
+#include "triangulated_surfaces.h"
 
 namespace curvature_lines {
 namespace {

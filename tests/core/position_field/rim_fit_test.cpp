@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
+#include "rims.h"
+#include "scaffold.h"
 
 namespace curvature_lines::test {
 namespace {

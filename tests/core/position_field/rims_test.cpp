@@ -1,7 +1,11 @@
 // Rims of known surfaces: how many, where they turn, and which way they run.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "point_cloud.h"
 #include "rims.h"
 #include "triangulated_surfaces.h"
 

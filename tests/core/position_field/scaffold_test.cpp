@@ -1,13 +1,17 @@
 // The scaffold on exact surfaces, clean and dirty: manifold with the topology of the surface.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <set>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 #include "scaffold.h"
+#include "scaffold_sites.h"
 
 namespace curvature_lines {
 namespace {

@@ -3,7 +3,10 @@
 #include "surface_curves.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 

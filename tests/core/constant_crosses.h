@@ -5,8 +5,12 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "cross_field.h"
+#include "curvature_field.h"
+#include "point_cloud.h"
+#include "scaffold.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines::test {

@@ -2,10 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 #include <Eigen/Dense>
 
 #include "analytic_surfaces.h"
+#include "cloud_index.h"
 #include "curvature_estimate.h"
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "robust_curvature.h"
 
 namespace curvature_lines::test {
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <functional>
+#include <utility>
 
 #include "analytic_surfaces.h"
 #include "crease_points.h"

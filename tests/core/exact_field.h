@@ -3,10 +3,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "analytic_surfaces.h"
-#include "robust_curvature.h"
+#include "curvature_field.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
 
 namespace curvature_lines::test {
 

@@ -3,10 +3,16 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "analytic_surfaces.h"
+#include "line_network.h"
 #include "line_tracing.h"
+#include "point_cloud.h"
 
 namespace curvature_lines::tests {
 

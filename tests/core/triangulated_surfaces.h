@@ -3,10 +3,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "analytic_surfaces.h"
+#include "point_cloud.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines::test {

@@ -3,9 +3,9 @@
 #include "scaffold_sites.h"
 
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <set>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>

@@ -15,6 +15,7 @@
 #include "blended_surface.h"
 #include "cloud_index.h"
 #include "covering_patch.h"
+#include "near_duplicates.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "point_deviation.h"
@@ -510,14 +511,38 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	return result;
 }
 
-} // namespace
-
-RobustDenoisingResult denoiseRobustly(
+RobustDenoisingResult denoiseSinglePoints(
 	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress)
 {
 	if (index.size() < fewestPoints)
 		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius};
 	return RobustDenoiser(index, options, progress.sub(0.0, 0.05, stage)).run(progress);
+}
+
+} // namespace
+
+RobustDenoisingResult denoiseRobustly(
+	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress)
+{
+	const NearDuplicates duplicates = nearDuplicates(index, progress.sub(0.0, 0.025, stage));
+	const Progress       rest       = progress.sub(0.025, 1.0, stage);
+	if (duplicates.groups == index.size())
+		return denoiseSinglePoints(index, options, rest);
+	// Duplicates count as one point and move as one: onto the surface, where they keep their places around their mean.
+	const PointCloud      mean   = meanPoints(index, duplicates);
+	const CloudIndex      single = index.moved(mean.positions, mean.normals);
+	RobustDenoisingResult result = denoiseSinglePoints(single, options, rest);
+	Eigen::Matrix3Xd      positions(3, index.size()), normals(3, index.size());
+	for (Index i = 0; i < index.size(); ++i) {
+		const Index           g      = duplicates.group[i];
+		const Eigen::Vector3d normal = result.normals.col(g);
+		const Eigen::Vector3d offset = index.cloud().positions.col(i) - mean.positions.col(g);
+		positions.col(i) = result.positions.col(g) + (offset - normal.dot(offset) * normal);
+		normals.col(i)   = normal;
+	}
+	result.positions = std::move(positions);
+	result.normals   = std::move(normals);
+	return result;
 }
 
 } // namespace curvature_lines

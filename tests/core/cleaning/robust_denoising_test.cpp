@@ -228,6 +228,57 @@ TEST(RobustDenoising, FollowsTheNoise)
 		1.3 * louder.rmsDistance(denoiseRobustly(louder.cloud).positions, much));
 }
 
+// The cloud and `copies` of its first points, with an error of `jitter` (a length) in each coordinate.
+PointCloud repeated(const PointCloud& cloud, Index copied, int copies, double jitter)
+{
+	samples::Random random(11, 4);
+	PointCloud      all;
+	all.positions.resize(3, cloud.size() + copies * copied);
+	all.normals.resize(3, all.positions.cols());
+	for (Index k = 0; k < all.positions.cols(); ++k) {
+		const bool  original = k < cloud.size();
+		const Index i        = original ? k : (k - cloud.size()) % copied;
+		all.positions.col(k) = cloud.positions.col(i);
+		if (!original)
+			all.positions.col(k) += jitter * random.normal3();
+		all.normals.col(k) = cloud.normals.col(i);
+	}
+	return all;
+}
+
+// A copy has the noise of its point and tells nothing new: as much noise is left as without it.
+TEST(RobustDenoising, CountsCopiesOfAPointAsOne)
+{
+	const NoisyCloud single("torus", 3000, 0.002);
+	const Index      n       = single.cloud.size();
+	const double     spacing = std::sqrt(1.9 / 3000.0);
+	const auto       alone   = denoiseRobustly(single.cloud);
+	const struct {
+		Index  copied;
+		int    copies;
+		double jitter, over; // spacings; noise left over that of the single points
+	} cases[] = {
+		{n, 1, 1e-8, 1.02},
+		{n, 1, 1e-4, 1.02},
+		{n, 1, 0.01, 1.1},
+		{n, 1, 0.04, 1.15},
+		{n, 2, 0.01, 1.1},
+		{n / 3, 1, 1e-3, 1.05}};
+	for (const auto& c : cases) {
+		SCOPED_TRACE(
+			std::to_string(c.copied) + " points, copies of each: " + std::to_string(c.copies) +
+			", error in spacings: " + std::to_string(c.jitter));
+		NoisyCloud twice  = single;
+		twice.cloud       = repeated(single.cloud, c.copied, c.copies, c.jitter * spacing);
+		const auto result = denoiseRobustly(twice.cloud);
+		EXPECT_LT(
+			twice.rmsDistance(result.positions, twice.all()),
+			c.over * single.rmsDistance(alone.positions, single.all()));
+		EXPECT_NEAR(result.pointDeviation, alone.pointDeviation, 0.15 * alone.pointDeviation);
+		EXPECT_NEAR(result.radius, alone.radius, 0.25 * alone.radius);
+	}
+}
+
 TEST(RobustDenoising, NeedsNoMoreOfNormalsThanMostOfTheirSides)
 {
 	std::mt19937                     random(5);

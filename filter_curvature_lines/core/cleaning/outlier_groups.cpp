@@ -26,8 +26,6 @@ constexpr Index smallVoter = 30; // points of the patches that judge groups
 // Smaller groups would have the majority of such a patch.
 constexpr Index  fewestInGroup = smallVoter;
 constexpr double linkLength    = 2.0; // spacings: rejected points so near are of one group
-// Spacing over the distance to the 6th neighbour, of evenly spread points.
-constexpr double spacingOfCrowd = 0.72;
 // Deviation over heightDeviation up to which a patch is one surface.
 constexpr double oneSurface = 1.5;
 // Of the points on the patch, those that join the group to the rest.

@@ -48,6 +48,8 @@ struct VoterCloud {
 
 // The place among its neighbours whose distance VoterCloud::crowding holds.
 constexpr Index crowdSize = 6;
+// Spacing over that distance, of evenly spread points.
+constexpr double spacingOfCrowd = 0.72;
 
 void fitVoter(OutlierVoter& voter, const VoterCloud& cloud);
 

@@ -17,6 +17,7 @@
 #include "outlier_result.h"
 #include "outlier_voter.h"
 #include "point_cloud.h"
+#include "point_restoration.h"
 #include "progress.h"
 #include "quantile.h"
 #include "spatial_order.h"
@@ -342,6 +343,7 @@ void RobustVote::restoreLargeGroups(const Progress& progress)
 {
 	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
 	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, progress);
+	restorePoints(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, progress);
 }
 
 double RobustVote::heightDeviation() const

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "crease_ends.h"

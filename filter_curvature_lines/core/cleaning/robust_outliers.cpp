@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "cloud_index.h"
+#include "coordinate_steps.h"
 #include "neighborhoods.h"
 #include "outlier_ballot.h"
 #include "outlier_groups.h"
@@ -67,6 +68,10 @@ constexpr double groupSensitivity = 2.0;
 constexpr int    spreadPasses     = 3;
 constexpr Index  minRejectedPeers = 3;
 constexpr double rejectedPeers    = 0.4;
+// A cloud that loses this share is looked at for rounded coordinates; spreading these over their steps is believed where
+// it leaves so much of the loss at most.
+constexpr double suspiciousShare = 0.002;
+constexpr double reliefShare     = 0.5;
 
 class RobustVote {
 public:
@@ -74,7 +79,7 @@ public:
 	void fitVoters(const Progress& progress);
 	bool vote(const Progress& progress); // true when something changed
 	double heightDeviation() const;
-	void restoreLargeGroups(const Progress& progress);
+	void restoreSurfaces(const Progress& progress);
 	OutlierResult result() const;
 
 private:
@@ -339,7 +344,7 @@ bool RobustVote::vote(const Progress& progress)
 	return replaceRejected(rejected);
 }
 
-void RobustVote::restoreLargeGroups(const Progress& progress)
+void RobustVote::restoreSurfaces(const Progress& progress)
 {
 	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
 	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, progress);
@@ -369,10 +374,8 @@ OutlierResult RobustVote::result() const
 	return result;
 }
 
-} // namespace
-
-OutlierResult rejectByRobustVotes(
-	const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
+OutlierResult
+rejectOnce(const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
 {
 	RobustVote  votes(index, sensitivity, progress.sub(0.0, 0.05, "Finding neighbors"));
 	const Index most = std::max<Index>(rounds, 1);
@@ -383,10 +386,39 @@ OutlierResult rejectByRobustVotes(
 		votes.fitVoters(part.sub(0.0, 0.8, "Fitting surfaces"));
 		changed = votes.vote(part.sub(0.8, 1.0, "Voting"));
 	}
-	votes.restoreLargeGroups(progress.sub(0.95, 1.0, "Restoring groups"));
+	votes.restoreSurfaces(progress.sub(0.95, 1.0, "Restoring groups"));
 	OutlierResult result = votes.result();
 	result.roundsUsed    = used;
 	return result;
+}
+
+Index countOf(const OutlierResult& result)
+{
+	return static_cast<Index>(std::count(result.outlier.begin(), result.outlier.end(), char(1)));
+}
+
+} // namespace
+
+// Where most heights are equal because they were rounded, the voters' deviation is that of one layer, and all other layers
+// look like outliers.
+OutlierResult rejectByRobustVotes(
+	const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
+{
+	const OutlierResult first =
+		rejectOnce(index, sensitivity, rounds, progress.sub(0.0, 0.5, "Rejecting outliers"));
+	if (double(countOf(first)) < suspiciousShare * double(index.size()))
+		return first;
+	std::vector<double>     spacing = index.spacing();
+	const SpreadCoordinates spread =
+		spreadOverSteps(index.cloud().positions, medianInPlace(spacing));
+	if (!spread.any())
+		return first;
+	OutlierResult second = rejectOnce(
+		index.moved(spread.positions, index.cloud().normals),
+		sensitivity,
+		rounds,
+		progress.sub(0.5, 1.0, "Rejecting outliers"));
+	return double(countOf(second)) > reliefShare * double(countOf(first)) ? first : second;
 }
 
 double voterHeightDeviation(const CloudIndex& index, const Progress& progress)

@@ -20,7 +20,14 @@ from clouds.cleaning import (
 )
 from clouds.generated import PLANE_FIT_NEIGHBORS
 from clouds.scans import LARGE_SCAN, found, oriented_vertices
-from figures.cleaning import denoising_figures, part_selection_figures, ratio_figures, selection_figures
+from clouds.thin_shapes import REAL_SHAPES, SOLIDS, real_shape, rounded_wall
+from figures.cleaning import (
+    denoising_figures,
+    part_selection_figures,
+    ratio_figures,
+    selection_figures,
+    true_shape_figures,
+)
 from harness.command_line import Benchmark, Settings, main
 from harness.comparison import Case, Comparison, Figures, Method, Outcome, methods_of
 from harness.fresh_process import cost_of
@@ -101,6 +108,34 @@ def clean(settings: Settings) -> str:
         for width in (3.0, 6.0)
     ]
     return "Groove: a Gaussian valley, as deep as its half width at 1/e, that width in spacings.\n\n" + SELECTING.table(
+        cases, settings, selection_figures
+    )
+
+
+@BENCHMARK.experiment("true", "True shapes, nothing to reject")
+def true_shapes(settings: Settings) -> str:
+    targets = {"inliers selected, %": Target(0.1, 0.02), "worst ball, %": Target(33.3, 10.0)}
+    cases = [Case(label, solid, targets, quick=label.startswith("cone")) for label, solid in SOLIDS.items()]
+    data = settings.data
+    shapes = {label: data / name for label, name in REAL_SHAPES.items() if found(data, name)} if data else {}
+    cases += [Case(label, real_shape(file), targets, one_seed=True) for label, file in shapes.items()]
+    missing = "" if shapes else "Real shapes skipped: `--data FOLDER` says where they are.\n\n"
+    return (
+        "Exact solids of 10 000 random points with parts thinner than a patch, and shapes that are clean. Worst ball: the "
+        "largest share of the points in a ball of 3 spacings around one of them that is lost; a third means that a tip or "
+        "a rim is emptied.\n\n" + missing + SELECTING.table(cases, settings, true_shape_figures)
+    )
+
+
+@BENCHMARK.experiment("rounded", "Depth rounded to steps")
+def rounded_depth(settings: Settings) -> str:
+    targets = {"inliers selected, %": Target(0.5, 0.1)}
+    cases = [
+        Case(f"wall, step {step:g} noises, tilt {degrees:g}°", rounded_wall(step, degrees), targets, quick=step == 2.0)
+        for step in (0.5, 1.0, 2.0, 3.0)
+        for degrees in (0.0, 5.0, 20.0, 40.0)
+    ]
+    return "A wall of 8100 points, noise of .7 spacings, as a depth camera gives it.\n\n" + SELECTING.table(
         cases, settings, selection_figures
     )
 

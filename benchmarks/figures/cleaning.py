@@ -12,6 +12,7 @@ from harness.comparison import Figures, prefixed
 from harness.results import Moved, Selection
 from harness.shared import rms
 
+EMPTIED_BALL = 3.0  # spacings
 CLEARLY_OUTSIDE = 3.0  # noise units from the surface: nearer outliers cannot be told from noise
 
 
@@ -24,6 +25,16 @@ def selection_figures(cloud: Cloud, selection: Selection) -> Figures:
         hits, wrong = np.count_nonzero(found & bad), np.count_nonzero(found & good)
         figures = {"recall": hits / bad.sum(), "precision": hits / max(1, hits + wrong), **figures}
     return figures
+
+
+def true_shape_figures(cloud: Cloud, selection: Selection) -> Figures:
+    """Of a cloud without outliers: what it lost, and the largest share lost in a ball of three spacings."""
+    lost = np.flatnonzero(selection.outliers)
+    worst = 0.0
+    for point in cloud.positions[lost]:
+        near = np.linalg.norm(cloud.positions - point, axis=1) < EMPTIED_BALL * cloud.spacing
+        worst = max(worst, float(selection.outliers[near].mean()))
+    return {"inliers selected, %": 100.0 * len(lost) / len(cloud.positions), "worst ball, %": 100.0 * worst}
 
 
 def part_selection_figures(cloud: Cloud, selection: Selection) -> Figures:

@@ -406,7 +406,7 @@ OutlierResult rejectByRobustVotes(
 {
 	const OutlierResult first =
 		rejectOnce(index, sensitivity, rounds, progress.sub(0.0, 0.5, "Rejecting outliers"));
-	if (double(countOf(first)) < suspiciousShare * double(index.size()))
+	if (double(countOf(first)) <= suspiciousShare * double(index.size()))
 		return first;
 	std::vector<double>     spacing = index.spacing();
 	const SpreadCoordinates spread =

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "cloud_index.h"
 #include "control_neighborhood.h"
 #include "curvature_driven_projection.h"
 #include "filter_results.h"
@@ -11,7 +12,6 @@
 #include "help_text.h"
 #include "host_types.h"
 #include "layer_conversion.h"
-#include "neighborhoods.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "point_set_surface.h"
@@ -118,15 +118,14 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	const MeshModel& proxy   = layerWithId(context.document, options.proxyLayer, "proxy_mesh");
 	requireSameMatrix(control, proxy, "'control_mesh' and 'proxy_mesh'");
 
-	const LayerPoints          points = readOrientedPoints(control);
-	const LayerPoints          moving = readPoints(proxy);
-	FilterResults              results;
-	Stopwatch                  total;
-	const PreparedCloud        prepared = prepareCloud(points.positions, points.normals);
-	const NeighborSearch       search(prepared.cloud.positions);
-	const MinimumNeighborhoods minimum = minimumNeighborhoods(
-		prepared.cloud, search, {}, context.progress.sub(0.0, 0.3, "Finding neighborhoods"));
-	const ControlPoints          controlPoints{prepared.cloud, search, minimum.spacing};
+	const LayerPoints   points = readOrientedPoints(control);
+	const LayerPoints   moving = readPoints(proxy);
+	FilterResults       results;
+	Stopwatch           total;
+	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
+	const CloudIndex    index(prepared.cloud);
+	index.minimum(context.progress.sub(0.0, 0.3, "Finding neighborhoods"));
+	const ControlPoints          controlPoints(index);
 	const CurvatureDrivenSurface surface(controlPoints, options.surface);
 
 	Eigen::Matrix3Xd unit = moving.positions;

@@ -47,13 +47,6 @@ ControlPoints::ControlPoints(const CloudIndex& points, const std::vector<double>
 {
 }
 
-ControlPoints::ControlPoints(
-	const PointCloud&          points,
-	const NeighborSearch&      ownSearch,
-	const std::vector<double>& spacings) : cloud(points), search(ownSearch), spacing(spacings)
-{
-}
-
 bool ControlNeighborhood::gather(const ControlPoints& control, const Vector3d& place, double reach)
 {
 	if (!place.allFinite() || control.cloud.size() == 0)

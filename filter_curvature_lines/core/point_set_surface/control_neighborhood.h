@@ -23,12 +23,6 @@ struct ControlPoints {
 	// With another spacing (N, lengths), which must outlive it.
 	ControlPoints(const CloudIndex& points, const std::vector<double>& spacings);
 
-	// With a search and spacing of one's own, which must outlive it, as must the cloud.
-	ControlPoints(
-		const PointCloud&          points,
-		const NeighborSearch&      ownSearch,
-		const std::vector<double>& spacings);
-
 	CloudIndex                 index; // what the others are part of
 	const PointCloud&          cloud;
 	const NeighborSearch&      search;

@@ -12,6 +12,7 @@
 
 #include "cloud_index.h"
 #include "coordinate_steps.h"
+#include "flying_pixels.h"
 #include "neighborhoods.h"
 #include "outlier_ballot.h"
 #include "outlier_groups.h"
@@ -76,6 +77,7 @@ constexpr double reliefShare     = 0.5;
 class RobustVote {
 public:
 	RobustVote(const CloudIndex& index, double sensitivity, const Progress& progress);
+	void rejectFlyingPixels(const Progress& progress); // before the first vote
 	void fitVoters(const Progress& progress);
 	bool vote(const Progress& progress); // true when something changed
 	double heightDeviation() const;
@@ -91,6 +93,7 @@ private:
 	void rejectByVerdict(std::vector<char>& rejected);
 	void rejectGroups(std::vector<char>& rejected, const Progress& progress) const;
 	bool replaceRejected(const std::vector<char>& rejected);
+	void rejectFlying(std::vector<char>& rejected);
 	Index neighborsWanted(const OutlierVoter& voter) const;
 	Index size() const { return static_cast<Index>(m_positions.cols()); }
 
@@ -107,6 +110,7 @@ private:
 	NeighborLists             m_votersOf; // of each point
 	std::vector<Verdict>      m_verdicts;
 	std::vector<char>         m_rejected;
+	std::vector<char>         m_flying; // rejected whatever the votes say
 	Index                     m_isolated = 0;
 };
 
@@ -114,7 +118,8 @@ RobustVote::RobustVote(const CloudIndex& index, double sensitivity, const Progre
 		m_index(index), m_order(index.order()), m_positions(index.arrangedPositions()),
 		m_search(index.arrangedSearch()), m_sensitivity(sensitivity), m_crowding(size()),
 		m_largest(std::max(fewestNeighbors, size() / smallestShare)),
-		m_neighbors(std::min(usualNeighbors, m_largest)), m_verdicts(size()), m_rejected(size(), 0)
+		m_neighbors(std::min(usualNeighbors, m_largest)), m_verdicts(size()), m_rejected(size(), 0),
+		m_flying(size(), 0)
 {
 	parallelFor(size(), progress.sub(0.0, 0.5, "Finding neighbors"), [&](Index i) {
 		const auto nearest = m_search.nearest(m_positions.col(i), crowdSize + 1);
@@ -327,6 +332,23 @@ bool RobustVote::replaceRejected(const std::vector<char>& rejected)
 		   });
 }
 
+// Voters fitted before, to measure the noise, have seen them.
+void RobustVote::rejectFlyingPixels(const Progress& progress)
+{
+	m_flying =
+		findFlyingPixels({m_positions, m_crowding, m_order.rank, m_search, {}, m_search}, progress);
+	rejectFlying(m_rejected);
+}
+
+void RobustVote::rejectFlying(std::vector<char>& rejected)
+{
+	for (Index i = 0; i < size(); ++i)
+		if (m_flying[i]) {
+			rejected[i]           = 1;
+			m_verdicts[i].against = 1.0;
+		}
+}
+
 bool RobustVote::vote(const Progress& progress)
 {
 	collectVoters();
@@ -341,14 +363,21 @@ bool RobustVote::vote(const Progress& progress)
 	std::vector<char> rejected(size(), 0);
 	rejectByVerdict(rejected);
 	rejectGroups(rejected, progress.sub(0.9, 1.0, "Voting"));
+	rejectFlying(rejected);
 	return replaceRejected(rejected);
 }
 
 void RobustVote::restoreSurfaces(const Progress& progress)
 {
-	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
-	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, progress);
-	restorePoints(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, progress);
+	const VoterCloud        cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
+	const std::vector<char> lone =
+		findLoneMixedPixels(cloud, m_rejected, progress.sub(0.0, 0.2, "Finding flying pixels"));
+	for (Index i = 0; i < size(); ++i)
+		m_flying[i] |= lone[i];
+	const Progress part = progress.sub(0.2, 1.0, "Restoring groups");
+	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
+	restorePoints(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
+	rejectFlying(m_rejected);
 }
 
 double RobustVote::heightDeviation() const
@@ -377,9 +406,10 @@ OutlierResult RobustVote::result() const
 OutlierResult
 rejectOnce(const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
 {
-	RobustVote  votes(index, sensitivity, progress.sub(0.0, 0.05, "Finding neighbors"));
+	RobustVote  votes(index, sensitivity, progress.sub(0.0, 0.04, "Finding neighbors"));
 	const Index most = std::max<Index>(rounds, 1);
-	Index       used = 0;
+	votes.rejectFlyingPixels(progress.sub(0.04, 0.05, "Finding flying pixels"));
+	Index used = 0;
 	for (bool changed = true; changed && used < most; ++used) {
 		const Progress part = progress.sub(
 			0.05 + 0.9 * used / most, 0.05 + 0.9 * (used + 1) / most, "Rejecting outliers");

@@ -11,10 +11,13 @@ import numpy as np
 from clouds.cleaning import (
     EDGE_ZONE,
     SMOOTH_NORMALS_NEIGHBORS,
+    WAVE_NOISE,
     Cloud,
+    doubled,
     grooved,
     quarters_alone,
     sampled,
+    scanned,
     uneven,
     with_clean_mesh,
 )
@@ -23,6 +26,7 @@ from clouds.scans import LARGE_SCAN, found, oriented_vertices
 from clouds.thin_shapes import REAL_SHAPES, SOLIDS, real_shape, rounded_wall
 from figures.cleaning import (
     denoising_figures,
+    error_figures,
     part_selection_figures,
     ratio_figures,
     selection_figures,
@@ -179,6 +183,46 @@ def sharp(settings: Settings) -> str:
     ]
     return f"Edges: foot points within {100 * EDGE_ZONE:g} % of the side from an edge.\n\n" + MOVING.table(
         cases, settings, denoising_figures
+    )
+
+
+@BENCHMARK.experiment("lines", "Scan lines and twins")
+def scan_lines_and_twins(settings: Settings) -> str:
+    left = {1.0: (0.12, 0.12), 5.0: (0.15, 0.12), 8.0: (0.2, 0.12), 12.0: (0.3, 0.12)}
+    noisy = [
+        Case(
+            f"lines {ratio:g}:1", scanned(ratio, WAVE_NOISE), {"RMS ratio": Target(*bounds)}, quick=ratio == 12.0
+        )
+        for ratio, bounds in left.items()
+    ]
+    exact = [
+        Case(
+            f"lines {ratio:g}:1, no noise",
+            scanned(ratio, 0.0),
+            {"RMS error": Target(0.025, 0.0)},
+            quick=ratio == 12.0,
+        )
+        for ratio in left
+        if ratio > 1.0
+    ]
+    twins = [Case("torus 3000, 0.25 %", sampled("torus", 3000, 0.0025), {"RMS ratio": Target(0.22, 0.18)})] + [
+        Case(
+            f"the same twice, error {error:g}",
+            doubled(3000, 0.0025, error),
+            {"RMS ratio": Target(0.24, 0.18)},
+            quick=error == 0.01,
+        )
+        for error in (1e-8, 1e-4, 0.01, 0.04)
+    ]
+    return (
+        f"A wave, {WAVE_NOISE:g} high noise along z, on lines so many times as far apart as their points; errors made where "
+        "there is no noise, in units of that noise; a torus and the same torus with a copy of each point, off by so many "
+        "spacings in each coordinate.\n\n"
+        + MOVING.table(noisy, settings, ratio_figures)
+        + "\n"
+        + MOVING.table(exact, settings, error_figures)
+        + "\n"
+        + MOVING.table(twins, settings, ratio_figures)
     )
 
 

@@ -31,9 +31,12 @@ class Cloud:
     distance: Callable[[np.ndarray], np.ndarray]  # signed, of moved positions (all points) from the surface
     parts: dict[str, np.ndarray]  # name: mask of points
     rim_distance: Callable[[np.ndarray], np.ndarray] | None = None  # of the foot points, where there is a rim
+    exact_normals: bool = False  # planes through neighbours of a single scan line say nothing
 
     @cached_property
     def normals(self) -> np.ndarray:
+        if self.exact_normals:
+            return self.outward
         return analytic_surfaces.plane_fit_normals(self.positions, self.outward, PLANE_FIT_NEIGHBORS)
 
     @cached_property
@@ -128,6 +131,51 @@ def grooved(points: int, width: float) -> Callable[[int], Cloud]:
             distance,
             {"groove": groove, "elsewhere": ~groove},
         )
+
+    return make
+
+
+WAVE_SIDE, WAVE_HEIGHT, WAVE_LENGTH, WAVE_STEP = 30.0, 1.2, 15.0, 0.1
+WAVE_NOISE = 0.02
+
+
+def scanned(ratio: float, noise: float) -> Callable[[int], Cloud]:
+    """A wave on lines along x, ``ratio`` times as far apart as the points of a line; noise along z."""
+    w = 2.0 * np.pi / WAVE_LENGTH
+
+    def distance(moved: np.ndarray) -> np.ndarray:
+        return moved[:, 2] - WAVE_HEIGHT * np.sin(w * moved[:, 0]) * np.cos(w * moved[:, 1])
+
+    def make(seed: int) -> Cloud:
+        random = np.random.default_rng(seed)
+        x, y = np.meshgrid(np.arange(0.0, WAVE_SIDE, WAVE_STEP), np.arange(0.0, WAVE_SIDE, WAVE_STEP * ratio))
+        x = (x + random.uniform(0.0, WAVE_STEP, (len(x), 1))).ravel()
+        y = y.ravel()
+        z = WAVE_HEIGHT * np.sin(w * x) * np.cos(w * y) + random.normal(0.0, 1.0, len(x)) * noise
+        slopes = -w * WAVE_HEIGHT * np.array([np.cos(w * x) * np.cos(w * y), -np.sin(w * x) * np.sin(w * y)])
+        outward = np.column_stack([*slopes, np.ones(len(x))])
+        return Cloud(
+            np.column_stack([x, y, z]),
+            outward / np.linalg.norm(outward, axis=1, keepdims=True),
+            np.zeros(len(x), bool),
+            np.full(len(x), WAVE_NOISE),
+            distance,
+            {"": np.ones(len(x), bool)},
+            exact_normals=True,
+        )
+
+    return make
+
+
+def doubled(points: int, noise: float, error: float) -> Callable[[int], Cloud]:
+    """A torus and the same points again, each coordinate off by ``error`` spacings."""
+
+    def make(seed: int) -> Cloud:
+        one = sampled("torus", points, noise)(seed)
+        shift = np.random.default_rng(seed).normal(0.0, error * one.spacing, one.positions.shape)
+        twice = {name: np.concatenate([getattr(one, name)] * 2) for name in ("outward", "outlier", "noise_unit")}
+        parts = {"": np.ones(2 * len(shift), bool)}
+        return replace(one, positions=np.concatenate([one.positions, one.positions + shift]), parts=parts, **twice)
 
     return make
 

@@ -54,6 +54,10 @@ def ratio_figures(cloud: Cloud, moved: Moved) -> Figures:
     return figures
 
 
+def error_figures(cloud: Cloud, moved: Moved) -> Figures:
+    return {"RMS error": rms(cloud.distance(moved.positions)) / float(cloud.noise_unit.mean())}
+
+
 def denoising_figures(cloud: Cloud, moved: Moved) -> Figures:
     """Ratios per part; of the whole: shrinking or growing, clumping, what became of the rim."""
     before, after = cloud.distance_before, cloud.distance(moved.positions)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "point_deviation.h"
 #include "progress.h"
 #include "quantile.h"
+#include "scan_lines.h"
 
 namespace curvature_lines {
 
@@ -41,6 +43,8 @@ constexpr double noiseStep      = 1.26;
 constexpr double noiseSettled   = 1.02;
 constexpr double minRadiusNoise = 5.0;
 constexpr double fewPoints      = 0.1;
+constexpr double gapsOfNoise =
+	1.6; // BlendOptions::gapsAcross: three lines hold the least of the shape
 // Patches over tangent planes (Support::Free).
 constexpr double freeStep      = 1.4;
 constexpr double maxFreeRadius = 15.0;
@@ -52,6 +56,9 @@ constexpr double arcStart     = 0.8;
 constexpr double maxArcRadius = 25.0;
 constexpr double arcTolerance = 1.01;
 constexpr double arcTie       = 1.001;
+// BlendOptions::overlap of blends that a second one corrects: what it cannot correct is their scatter by the choice of
+// the patches' centres. With 38 a third more noise is left on lines of 5:1.
+constexpr double correctionOverlap = 300.0;
 // Patches of one face (Support::OneFace).
 constexpr double oneFaceStep      = 1.3;
 constexpr double maxOneFaceRadius = 17.0;
@@ -119,6 +126,24 @@ struct Candidate {
 	std::vector<double> loss; // per point: squared leave-one-out residual in noise units, limited
 };
 
+// Positions and normals of `first`, with this share of those of `second`.
+void mix(
+	Candidate&                 first,
+	const Candidate&           second,
+	const std::vector<double>& share, // per target
+	const std::vector<Index>&  targets)
+{
+	for (std::size_t t = 0; t < targets.size(); ++t) {
+		const Index           i = targets[t];
+		const Eigen::Vector3d n =
+			(1.0 - share[t]) * first.blend.normals.col(i) + share[t] * second.blend.normals.col(i);
+		first.blend.positions.col(i) = (1.0 - share[t]) * first.blend.positions.col(i) +
+		                               share[t] * second.blend.positions.col(i);
+		if (n.norm() > 0.0)
+			first.blend.normals.col(i) = n.normalized();
+	}
+}
+
 class RobustDenoiser {
 public:
 	// `progress`: of the spacing and of the normals that the first guide needs.
@@ -133,14 +158,15 @@ private:
 	double freeRadius(const Progress& progress) const;
 	double arcRadius(const BlendGuide& guide, double start, const Progress& progress) const;
 	Candidate smoothCandidate(const Progress& progress) const;
+	void correct(Candidate& smooth, double factor, const Progress& progress) const;
 	BlendedSurface edgePilot(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	BlendOptions oneFaceOptions(std::vector<double> radius) const;
 	Candidate sharpCandidate(
 		const Candidate& smooth, const std::vector<Index>& targets, const Progress& progress) const;
 	std::vector<double> pilotRadii(const Candidate& smooth) const;
-	std::vector<double> sharpShare(
-		const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const;
+	std::vector<double> shareOfSecond(
+		const Candidate& first, const Candidate& second, const std::vector<Index>& targets) const;
 	void sharpen(Candidate& smooth, const Progress& progress) const;
 	void undoFarMoves(BlendedSurface& blend) const;
 	bool fits(const std::vector<double>& radii) const;
@@ -171,7 +197,8 @@ RobustDenoiser::RobustDenoiser(
 			index.order(),
 			{index.arrangedPositions(), index.order().arrange(index.cloud().normals)},
 			index.spacing(progress.sub(0.0, 0.5, stage)),
-			{}},
+			{},
+			scanLines(index.arrangedPositions(), index.arrangedSearch(), index.order())},
 		m_start(
 			m_input.cloud.positions,
 			guideNormals(index, m_input.cloud.normals, progress.sub(0.5, 1.0, stage)),
@@ -237,7 +264,8 @@ void RobustDenoiser::findPointDeviation(const Progress& progress)
 	for (double& radius : m_least)
 		radius *= smallestRadius;
 	BlendOptions options;
-	options.overlap = testOverlap;
+	options.overlap    = testOverlap;
+	options.gapsAcross = gapsOfNoise;
 	for (int k = 0;; ++k) {
 		if (m_options.noise <= 0.0) {
 			options.radius         = m_least;
@@ -360,7 +388,51 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 		c                     = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
 		start                 = factor / arcStep;
 	}
+	if (m_input.lines.any())
+		correct(c, factor, progress.sub(0.8, 1.0, stage));
 	return c;
+}
+
+// Across scan lines patches have to be so wide that the shape limits them, not the noise. A second blend, of what the
+// first one leaves, allows still wider ones. Patches over an edge do not lose weight here, because purity would take
+// the shape of wide ones for an edge; where that harms, the smooth result stays.
+void RobustDenoiser::correct(Candidate& smooth, double factor, const Progress& progress) const
+{
+	std::vector<Index> test, targets;
+	const auto         onLine = [&](Index i) { return m_input.lines.gap[i] > 0.0; };
+	std::copy_if(m_offEdges.begin(), m_offEdges.end(), std::back_inserter(test), onLine);
+	std::copy_if(m_everywhere.begin(), m_everywhere.end(), std::back_inserter(targets), onLine);
+	if (test.empty())
+		return;
+	const BlendGuide guide(smooth.blend.positions, smooth.blend.normals);
+	BlendOptions     options;
+	options.overlap  = correctionOverlap;
+	double    lowest = std::numeric_limits<double>::infinity();
+	Candidate best;
+	for (int k = 0;; ++k, factor *= arcStep) {
+		const Progress part = rung(progress, k);
+		options.radius      = radii(factor);
+		options.support     = Support::ArcLength;
+		Candidate        c  = candidate(guide, options, m_everywhere, part.sub(0.0, 0.5, stage));
+		const BlendGuide flat(std::move(c.blend.positions), std::move(c.blend.normals));
+		options.heights = std::move(c.blend.height);
+		options.support = Support::Correction;
+		c               = candidate(flat, options, m_everywhere, part.sub(0.5, 1.0, stage));
+		const double s  = score(c, test);
+		if (s < lowest) {
+			lowest = s;
+			best   = std::move(c);
+		}
+		if (s > arcTolerance * lowest || m_options.radius > 0.0 || factor > maxArcRadius ||
+		    !fits(options.radius))
+			break;
+	}
+	std::vector<double> share = shareOfSecond(best, smooth, targets);
+	for (double& s : share)
+		s = 1.0 - s;
+	mix(smooth, best, share, targets);
+	for (const Index i : targets)
+		smooth.radius[i] = best.radius[i];
 }
 
 std::vector<double> RobustDenoiser::pilotRadii(const Candidate& smooth) const
@@ -438,24 +510,24 @@ Candidate RobustDenoiser::sharpCandidate(
 	return best;
 }
 
-// Share of the gated patches in a point: how much better they explain it and its neighbours on the
-// same side of an edge than smooth patches do.
-std::vector<double> RobustDenoiser::sharpShare(
-	const Candidate& smooth, const Candidate& sharp, const std::vector<Index>& targets) const
+// Share of the second candidate, of patches that stop at edges, in a point: how much better it explains the point and
+// its neighbours on the same side of an edge than the first one does.
+std::vector<double> RobustDenoiser::shareOfSecond(
+	const Candidate& first, const Candidate& second, const std::vector<Index>& targets) const
 {
 	const auto       n = static_cast<Index>(targets.size());
 	Eigen::Matrix3Xd places(3, n);
 	for (Index t = 0; t < n; ++t)
-		places.col(t) = sharp.blend.positions.col(targets[t]);
+		places.col(t) = second.blend.positions.col(targets[t]);
 	const NeighborSearch search(places);
 	std::vector<double>  share(n);
 	parallelFor(n, {}, [&](Index t) {
-		const Eigen::Vector3d normal = sharp.blend.normals.col(targets[t]);
+		const Eigen::Vector3d normal = second.blend.normals.col(targets[t]);
 		double                gain = 0.0, weights = 0.0;
 		for (const Index k : search.nearest(places.col(t), gainNeighbors)) {
 			const Index  j = targets[k];
-			const double w = std::max(sameSide, normal.dot(sharp.blend.normals.col(j)) - 0.5);
-			gain += w * (smooth.loss[j] - sharp.loss[j]);
+			const double w = std::max(sameSide, normal.dot(second.blend.normals.col(j)) - 0.5);
+			gain += w * (first.loss[j] - second.loss[j]);
 			weights += w;
 		}
 		share[t] = std::clamp((gain / weights - smoothGain) / (sharpGain - smoothGain), 0.0, 1.0);
@@ -471,17 +543,8 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 			targets.push_back(i);
 	if (targets.empty())
 		return;
-	const Candidate           sharp = sharpCandidate(smooth, targets, progress);
-	const std::vector<double> share = sharpShare(smooth, sharp, targets);
-	for (std::size_t t = 0; t < targets.size(); ++t) {
-		const Index           i = targets[t];
-		const Eigen::Vector3d n =
-			(1.0 - share[t]) * smooth.blend.normals.col(i) + share[t] * sharp.blend.normals.col(i);
-		smooth.blend.positions.col(i) = (1.0 - share[t]) * smooth.blend.positions.col(i) +
-		                                share[t] * sharp.blend.positions.col(i);
-		if (n.norm() > 0.0)
-			smooth.blend.normals.col(i) = n.normalized();
-	}
+	const Candidate sharp = sharpCandidate(smooth, targets, progress);
+	mix(smooth, sharp, shareOfSecond(smooth, sharp, targets), targets);
 }
 
 // Such a point is an outlier, or was assigned to the wrong face.
@@ -500,9 +563,7 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	findPointsOffEdges(progress.sub(0.15, 0.2, stage));
 	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
-
 	undoFarMoves(cleaned.blend);
-
 	RobustDenoisingResult result;
 	result.positions      = m_input.order.restore(cleaned.blend.positions);
 	result.normals        = m_input.order.restore(cleaned.blend.normals);
@@ -511,37 +572,26 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	return result;
 }
 
-RobustDenoisingResult denoiseSinglePoints(
-	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress)
-{
-	if (index.size() < fewestPoints)
-		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius};
-	return RobustDenoiser(index, options, progress.sub(0.0, 0.05, stage)).run(progress);
-}
-
 } // namespace
 
 RobustDenoisingResult denoiseRobustly(
 	const CloudIndex& index, const RobustDenoisingOptions& options, const Progress& progress)
 {
+	// Duplicates count as one point and move as one.
 	const NearDuplicates duplicates = nearDuplicates(index, progress.sub(0.0, 0.025, stage));
-	const Progress       rest       = progress.sub(0.025, 1.0, stage);
-	if (duplicates.groups == index.size())
-		return denoiseSinglePoints(index, options, rest);
-	// Duplicates count as one point and move as one: onto the surface, where they keep their places around their mean.
-	const PointCloud      mean   = meanPoints(index, duplicates);
-	const CloudIndex      single = index.moved(mean.positions, mean.normals);
-	RobustDenoisingResult result = denoiseSinglePoints(single, options, rest);
-	Eigen::Matrix3Xd      positions(3, index.size()), normals(3, index.size());
-	for (Index i = 0; i < index.size(); ++i) {
-		const Index           g      = duplicates.group[i];
-		const Eigen::Vector3d normal = result.normals.col(g);
-		const Eigen::Vector3d offset = index.cloud().positions.col(i) - mean.positions.col(g);
-		positions.col(i) = result.positions.col(g) + (offset - normal.dot(offset) * normal);
-		normals.col(i)   = normal;
-	}
-	result.positions = std::move(positions);
-	result.normals   = std::move(normals);
+	const bool           none       = duplicates.groups == index.size();
+	const PointCloud     mean       = none ? PointCloud() : meanPoints(index, duplicates);
+	const CloudIndex     points     = none ? index : index.moved(mean.positions, mean.normals);
+	if (points.size() < fewestPoints)
+		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius};
+	RobustDenoisingResult result =
+		RobustDenoiser(points, options, progress.sub(0.025, 0.05, stage)).run(progress);
+	if (none)
+		return result;
+	PointCloud moved =
+		placedAroundMeans(index.cloud(), duplicates, mean, {result.positions, result.normals});
+	result.positions = std::move(moved.positions);
+	result.normals   = std::move(moved.normals);
 	return result;
 }
 

@@ -154,4 +154,21 @@ PointCloud meanPoints(const CloudIndex& index, const NearDuplicates& duplicates)
 	return mean;
 }
 
+PointCloud placedAroundMeans(
+	const PointCloud&     cloud,
+	const NearDuplicates& duplicates,
+	const PointCloud&     before,
+	const PointCloud&     after)
+{
+	PointCloud moved = cloud;
+	for (Index i = 0; i < cloud.size(); ++i) {
+		const Index           g      = duplicates.group[i];
+		const Eigen::Vector3d normal = after.normals.col(g);
+		const Eigen::Vector3d offset = cloud.positions.col(i) - before.positions.col(g);
+		moved.positions.col(i) = after.positions.col(g) + (offset - normal.dot(offset) * normal);
+		moved.normals.col(i)   = normal;
+	}
+	return moved;
+}
+
 } // namespace curvature_lines

@@ -29,4 +29,12 @@ NearDuplicates nearDuplicates(const CloudIndex& index, const Progress& progress 
 // One point per group, in the order of their numbers: mean position, unit mean normal.
 PointCloud meanPoints(const CloudIndex& index, const NearDuplicates& duplicates);
 
+// The points of a cloud whose means have moved from `before` to `after`: in the tangent planes there, with their places
+// around the means kept.
+PointCloud placedAroundMeans(
+	const PointCloud&     cloud,
+	const NearDuplicates& duplicates,
+	const PointCloud&     before,
+	const PointCloud&     after);
+
 } // namespace curvature_lines

@@ -31,9 +31,12 @@ using Support = BlendOptions::Support;
 constexpr double acrossEdge = 0.1;
 // Of a patch that predicts where the face beyond an edge is.
 constexpr double maxAcrossLeverage = 0.2;
-constexpr double radiusRatio  = 1.25; // between the radii of overlapping patches: radii are smooth
-constexpr double minLeverage  = 1e-12;
-constexpr double minRemaining = 0.02; // of a residual, without the influence of the point itself
+constexpr double radiusRatio = 1.25; // between the radii of overlapping patches: radii are smooth
+constexpr double minLeverage = 1e-12;
+// Of a point on the surface and its correction, over that on one of them: with the blend S, 2 S - S^2 has the diagonal
+// (2 - k) S, k: integral of the squared kernel over its peak.
+constexpr double influenceOfTwo = 1.4;
+constexpr double minRemaining   = 0.02; // of a residual, without the influence of the point itself
 
 // What a patch beyond an edge says about a point.
 struct FaceVote {
@@ -83,7 +86,7 @@ Prediction predict(
 	const Vector3d&      normal)
 {
 	const SurfacePatch&   surface = patch.surface;
-	const Eigen::Vector2d at      = surface.frame.toPlane(place - surface.origin) / surface.radius;
+	const Eigen::Vector2d at      = surface.toPlane(place - surface.origin);
 	Prediction            p;
 	if (at.squaredNorm() >= 1.0)
 		return p;
@@ -123,6 +126,24 @@ Prediction predictByArcLength(
 	p.move = p.residual + noise * noise * surface.meanCurvature();
 	weigh(p, at.x, at.y, surface.leverage(at.x, at.y), 1.0);
 	p.weight *= cosine * cosine; // of a residual's variance
+	return p;
+}
+
+// The guide moves along its normal by what the patch predicts of the heights over it.
+Prediction predictCorrection(
+	const CoveringPatch& patch, const Vector3d& place, const Vector3d& normal, double height)
+{
+	const SurfacePatch&  surface = patch.surface;
+	const Vector3d       offset  = place - surface.origin;
+	const ArcCoordinates at      = arcCoordinates(surface, offset, offset, normal);
+	Prediction           p;
+	if (!at.valid || at.x * at.x + at.y * at.y >= 1.0)
+		return p;
+	p.direction = normal;
+	p.normal    = (normal - surface.frame.toSpace(surface.gradient(at.x, at.y))).normalized();
+	p.move      = -surface.height(at.x, at.y);
+	p.residual  = height + p.move;
+	weigh(p, at.x, at.y, surface.leverage(at.x, at.y), 1.0);
 	return p;
 }
 
@@ -270,6 +291,8 @@ void CoveringPatches::blendAt(Index i, BlendedSurface& blend) const
 			continue;
 		const Prediction p = m_options.support == Support::ArcLength
 		                         ? predictByArcLength(patch, position, place, normal, noise)
+		                     : m_options.support == Support::Correction
+		                         ? predictCorrection(patch, place, normal, m_options.heights[i])
 		                         : predict(patch, m_options, position, place, normal);
 		if (m_options.edges && p.normalWeight < acrossEdge && p.weight > 0.0 &&
 		    p.leverage < maxAcrossLeverage)
@@ -300,9 +323,13 @@ void CoveringPatches::blendAt(Index i, BlendedSurface& blend) const
 		if (faces.count > 1)
 			move = moveOntoFaces(faces);
 	}
-	blend.positions.col(i) = position + move;
+	const bool correction  = m_options.support == Support::Correction;
+	blend.positions.col(i) = (correction ? place : position) + move;
 	if (direction.norm() > 0.0)
 		blend.normals.col(i) = direction.normalized();
+	if (correction)
+		influence *= influenceOfTwo;
+	blend.height[i]   = residual / pure;
 	blend.residual[i] = residual / pure / std::max(1.0 - influence / pure, minRemaining);
 	blend.purity[i]   = pure / total;
 }
@@ -324,6 +351,7 @@ BlendedSurface blendPatches(
 	blend.positions = guide.positions;
 	blend.normals   = guide.normals;
 	blend.residual.assign(n, std::numeric_limits<double>::infinity());
+	blend.height.assign(n, 0.0);
 	blend.purity.assign(n, 0.0);
 	patches.describeResiduals(blend);
 	parallelFor(

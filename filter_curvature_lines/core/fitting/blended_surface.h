@@ -17,6 +17,7 @@ namespace curvature_lines {
 struct BlendedSurface {
 	Eigen::Matrix3Xd    positions, normals; // 3 x N
 	std::vector<double> residual; // leave-one-out, a length; infinite where no patch reaches
+	std::vector<double> height;   // the same with the point itself: of the input over the surface
 	std::vector<double> purity;   // 0..1: share of the patches' weight that their residuals leave
 	// Per valid patch: the point at its centre; of its residuals, see SurfacePatch.
 	std::vector<Index>  center;

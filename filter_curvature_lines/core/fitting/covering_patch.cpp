@@ -38,6 +38,13 @@ constexpr double maxPurityExcess = 40.0; // standard errors: purity is next to 0
 constexpr double farthestNoise   = 10.0;
 constexpr double farthestSpacing = 0.05;
 
+// Longer semi-axis of a patch over its radius, 1 where it is a disk.
+double elongationAt(const BlendInput& input, const BlendOptions& options, double radius, Index i)
+{
+	return input.lines.any() ? std::max(1.0, options.gapsAcross * input.lines.gap[i] / radius)
+	                         : 1.0;
+}
+
 struct Scratch {
 	std::vector<Index>    near;
 	std::vector<Vector3d> height, place, normal; // of the input; of the guide; both from the centre
@@ -66,14 +73,23 @@ void gather(
 	scratch.samples.reserve(scratch.near.size());
 }
 
-Vector3d principalNormal(const Scratch& scratch, double reach)
+// Of an offset from the origin, in semi-axes of the support if that of a disk were `reach`.
+double distanceInSupport(const SurfacePatch& patch, const Vector3d& d, double reach)
+{
+	if (patch.elongation == 1.0)
+		return d.norm() / reach;
+	const double along = d.dot(patch.lines), q = patch.elongation * patch.elongation;
+	return std::sqrt(d.squaredNorm() + along * along * (q * q - 1.0)) / reach;
+}
+
+Vector3d principalNormal(const SurfacePatch& patch, const Scratch& scratch, double reach)
 {
 	Vector3d        mean = Vector3d::Zero(), orientation = Vector3d::Zero();
 	Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
 	double          sum     = 0.0;
 	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
 		const Vector3d& p = scratch.height[k];
-		const double    w = supportWeight(scratch.place[k].norm() / reach, 0.0);
+		const double    w = supportWeight(distanceInSupport(patch, scratch.place[k], reach), 0.0);
 		sum += w;
 		mean += w * p;
 		moments += w * p * p.transpose();
@@ -103,11 +119,11 @@ void addSample(Scratch& scratch, double x, double y, double z, double w)
 
 bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
 {
-	patch.frame = TangentFrame(principalNormal(scratch, reach));
+	patch.setFrame(principalNormal(patch, scratch, reach));
 	for (const bool last : {false, true}) {
 		scratch.samples.reserve(scratch.near.size());
 		for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-			const Eigen::Vector2d p = patch.frame.toPlane(scratch.height[k]) / patch.radius;
+			const Eigen::Vector2d p = patch.toPlane(scratch.height[k]);
 			if (scratch.normal[k].dot(patch.frame.n) > minOpposing)
 				addSample(
 					scratch,
@@ -127,15 +143,16 @@ bool fitFree(SurfacePatch& patch, double reach, Scratch& scratch)
 // Into the frame of the patch, which the steps of a gated fit keep.
 void toFrame(const SurfacePatch& patch, Scratch& scratch)
 {
-	const auto inFrame = [&](const Vector3d& p, double scale) {
-		const Eigen::Vector2d plane = scale * patch.frame.toPlane(p);
-		return Vector3d(plane.x(), plane.y(), p.dot(patch.frame.n));
+	const auto inFrame = [&](const Vector3d& p, double scaleX, double scaleY) {
+		const Eigen::Vector2d plane = patch.frame.toPlane(p);
+		return Vector3d(scaleX * plane.x(), scaleY * plane.y(), p.dot(patch.frame.n));
 	};
 	const double perRadius = 1.0 / patch.radius;
+	const double perX = perRadius * patch.elongation, perY = perRadius / patch.elongation;
 	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
-		scratch.height[k] = inFrame(scratch.height[k], perRadius);
-		scratch.place[k]  = inFrame(scratch.place[k], perRadius);
-		scratch.normal[k] = inFrame(scratch.normal[k], 1.0);
+		scratch.height[k] = inFrame(scratch.height[k], perX, perY);
+		scratch.place[k]  = inFrame(scratch.place[k], perX, perY);
+		scratch.normal[k] = inFrame(scratch.normal[k], 1.0, 1.0);
 	}
 }
 
@@ -171,13 +188,18 @@ bool fitOneFace(SurfacePatch& patch, double noise, double width, Scratch& scratc
 	return false;
 }
 
-bool fitByArcLength(SurfacePatch& patch, Scratch& scratch)
+bool fitByArcLength(SurfacePatch& patch, const BlendOptions& options, Scratch& scratch)
 {
 	for (std::size_t k = 0; k < scratch.near.size(); ++k) {
 		const ArcCoordinates s =
 			arcCoordinates(patch, scratch.height[k], scratch.place[k], scratch.normal[k]);
 		if (s.valid)
-			addSample(scratch, s.x, s.y, s.z, supportWeight(s.x, s.y));
+			addSample(
+				scratch,
+				s.x,
+				s.y,
+				options.support == Support::Correction ? options.heights[scratch.near[k]] : s.z,
+				supportWeight(s.x, s.y));
 	}
 	return fitPatch(patch, scratch.samples);
 }
@@ -202,9 +224,10 @@ double farthestMove(const BlendInput& input, Index i)
 // Guides of the other supports are free of noise, so that their points lie within the radius.
 double ballRadius(const BlendInput& input, const BlendOptions& options, double radius, Index i)
 {
+	const double longest = radius * elongationAt(input, options, radius, i);
 	return options.support == Support::Free
-	           ? std::hypot(radius, slabNoise * input.pointDeviation[i])
-	           : radius;
+	           ? std::hypot(longest, slabNoise * input.pointDeviation[i])
+	           : longest;
 }
 
 double normalWeight(double e2)
@@ -223,7 +246,11 @@ ArcCoordinates arcCoordinates(
 		return {};
 	const double          stretch = arcOverChord(cosine) / patch.radius;
 	const Eigen::Vector2d p       = patch.frame.toPlane(place);
-	return {p.x() * stretch, p.y() * stretch, height.dot(patch.frame.n), true};
+	return {
+		p.x() * stretch * patch.elongation,
+		p.y() * stretch / patch.elongation,
+		height.dot(patch.frame.n),
+		true};
 }
 
 CoveringPatch coveringPatchAt(
@@ -235,12 +262,17 @@ CoveringPatch coveringPatchAt(
 	const double  reach   = ballRadius(input, options, radius, i);
 	SurfacePatch& surface = patch.surface;
 	surface               = SurfacePatch(guide.positions.col(i), guide.normals.col(i), radius);
+	surface.elongation    = elongationAt(input, options, radius, i);
+	if (surface.elongation > 1.0) {
+		surface.lines = input.lines.direction.col(i);
+		surface.setFrame(guide.normals.col(i));
+	}
 	gather(input, guide, i, reach, scratch);
 	const bool fitted =
 		options.support == Support::Free ? fitFree(surface, reach, scratch)
 		: options.support == Support::OneFace
 			? fitOneFace(surface, input.pointDeviation[i], options.normalWidth, scratch)
-			: fitByArcLength(surface, scratch);
+			: fitByArcLength(surface, options, scratch);
 	surface.valid = fitted && surface.effectiveCount > SurfacePatch::Fit::count + 1;
 	patch.purity  = purityOf(surface, input.pointDeviation[i], options.purity);
 	return patch;

@@ -58,10 +58,14 @@ int toNormals(
 }
 
 PatchSums patchSumsOf(
-	const double* quadric, const double* leverage, double radius, const SampleColumns<1>& samples)
+	const double*           quadric,
+	const double*           leverage,
+	double                  radiusX,
+	double                  radiusY,
+	const SampleColumns<1>& samples)
 {
 	return onThisProcessor([&](auto arch) {
-		return simd::patchSumsOf<decltype(arch)>(quadric, leverage, radius, samples);
+		return simd::patchSumsOf<decltype(arch)>(quadric, leverage, radiusX, radiusY, samples);
 	});
 }
 

@@ -78,9 +78,13 @@ struct PatchSums {
 	double squares, lost, squaredWeights;
 };
 
-// `quadric`: 6 coefficients, `leverage`: those of a quartic, both in x and y in radii.
+// `quadric`: 6 coefficients, `leverage`: those of a quartic, both in x and y in semi-axes.
 PatchSums patchSumsOf(
-	const double* quadric, const double* leverage, double radius, const SampleColumns<1>& samples);
+	const double*           quadric,
+	const double*           leverage,
+	double                  radiusX,
+	double                  radiusY,
+	const SampleColumns<1>& samples);
 
 // result[k] = |p_k - center|^2, k < size.
 void squaredDistances(

@@ -218,17 +218,21 @@ int toNormals(
 
 template<class Arch>
 PatchSums patchSumsOf(
-	const double* quadric, const double* leverage, double radius, const SampleColumns<1>& samples)
+	const double*           quadric,
+	const double*           leverage,
+	double                  radiusX,
+	double                  radiusY,
+	const SampleColumns<1>& samples)
 {
 	using B                 = Block<Arch>;
 	const double* const a   = quadric;
-	const double        ir  = 1.0 / radius;
+	const double        irx = 1.0 / radiusX, iry = 1.0 / radiusY;
 	const double        a3x = 2.0 * a[3], a5y = 2.0 * a[5];
 	B                   squares, lost, squaredWeights;
 	for (int s = 0; s < samples.size; s += blockSize) {
 		const B x = B::at(samples.x + s), y = B::at(samples.y + s), w = B::at(samples.weight + s);
-		const B slopeX = (a[1] + a3x * x + a[4] * y) * ir;
-		const B slopeY = (a[2] + a[4] * x + a5y * y) * ir;
+		const B slopeX = (a[1] + a3x * x + a[4] * y) * irx;
+		const B slopeY = (a[2] + a[4] * x + a5y * y) * iry;
 		const B off    = B::at(samples.value[0] + s) - a[0] - x * (a[1] + a[3] * x + a[4] * y) -
 		              y * (a[2] + a[5] * y);
 		B variance; // of the prediction, over that of one sample
@@ -297,7 +301,7 @@ void gaussianWeights(
 		const OrientedColumns&, const FrameColumns&, const double*, const SampleColumns<1>&); \
 	EXTERN template int toNormals<ARCH>(const OrientedColumns&, const FrameColumns&, const SampleColumns<3>&); \
 	EXTERN template PatchSums patchSumsOf<ARCH>( \
-		const double*, const double*, double, const SampleColumns<1>&); \
+		const double*, const double*, double, double, const SampleColumns<1>&); \
 	EXTERN template void squaredDistances<ARCH>(const double* const*, const double*, int, double*); \
 	EXTERN template void gaussianWeights<ARCH>( \
 		const double*, const double*, double, double, int, double*);

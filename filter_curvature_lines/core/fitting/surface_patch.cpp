@@ -202,7 +202,22 @@ bool reweightedStep(SurfacePatch& patch, double minScale, RobustPatchScratch& sc
 SurfacePatch::Local SurfacePatch::toLocal(const Vector3d& p) const
 {
 	const Vector3d d = p - origin;
-	return {d.dot(frame.u) / radius, d.dot(frame.v) / radius, d.dot(frame.n)};
+	const Vector2d q = toPlane(d);
+	return {q.x(), q.y(), d.dot(frame.n)};
+}
+
+void SurfacePatch::setFrame(const Vector3d& normal)
+{
+	frame = TangentFrame(normal);
+	if (elongation > 1.0) {
+		frame.u = tangentNear(lines, normal);
+		frame.v = normal.cross(frame.u);
+	}
+}
+
+Vector2d SurfacePatch::toPlane(const Vector3d& d) const
+{
+	return {d.dot(frame.u) / radius * elongation, d.dot(frame.v) / radius / elongation};
 }
 
 double SurfacePatch::height(double x, double y) const
@@ -213,8 +228,9 @@ double SurfacePatch::height(double x, double y) const
 
 Vector2d SurfacePatch::gradient(double x, double y) const
 {
-	const auto& a = coefficients;
-	return Vector2d(a[1] + 2.0 * a[3] * x + a[4] * y, a[2] + a[4] * x + 2.0 * a[5] * y) / radius;
+	const auto&    a = coefficients;
+	const Vector2d slope(a[1] + 2.0 * a[3] * x + a[4] * y, a[2] + a[4] * x + 2.0 * a[5] * y);
+	return Vector2d(slope.x() * elongation, slope.y() / elongation) / radius;
 }
 
 Vector3d SurfacePatch::normal(double x, double y) const
@@ -242,12 +258,13 @@ double SurfacePatch::leverage(double x, double y) const
 
 double SurfacePatch::meanCurvature() const
 {
-	return -(coefficients[3] + coefficients[5]) / (radius * radius);
+	const double stretch = elongation * elongation;
+	return -(coefficients[3] * stretch + coefficients[5] / stretch) / (radius * radius);
 }
 
 void SurfacePatch::tilt()
 {
-	frame = TangentFrame(normal(0.0, 0.0));
+	setFrame(normal(0.0, 0.0));
 }
 
 void patchResiduals(
@@ -288,7 +305,8 @@ bool fitPatch(SurfacePatch& patch, LocalSamples<1>& samples)
 	const PatchSums sums = patchSumsOf(
 		patch.coefficients.data(),
 		patch.leverageCoefficients.data(),
-		patch.radius,
+		patch.radius / patch.elongation,
+		patch.radius * patch.elongation,
 		samples.columns());
 	const double degrees = fit.sumOfWeights - sums.lost;
 	// Samples that a quadric goes through exactly tell nothing about the noise.

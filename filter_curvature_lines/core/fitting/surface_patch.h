@@ -24,7 +24,8 @@ namespace curvature_lines {
 //   a residual is suspicious.
 // - The points of a local surface come with normals, those of a patch from a guide or without any.
 //
-// z = phi(x, y) . a with phi = (1, x, y, x^2, x y, y^2); x and y in radii, z a length.
+// z = phi(x, y) . a with phi = (1, x, y, x^2, x y, y^2); x and y in semi-axes of the support, z a length. The support is
+// a disk, or an ellipse whose short axis x is along scan lines.
 struct SurfacePatch {
 	using Fit = PolynomialFit<2, 1>;
 	struct Local {
@@ -36,12 +37,15 @@ struct SurfacePatch {
 
 	Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 	TangentFrame    frame{Eigen::Vector3d::UnitZ()};
-	double          radius               = 0.0;
-	Quadric         coefficients         = Quadric::Zero();
-	Leverage        leverageCoefficients = Leverage::Zero(); // stays so in a robust fit
-	double          scale                = 0.0;              // of the residuals, a length
-	double          effectiveCount       = 0.0;              // (sum W)^2 / sum W^2
-	bool            valid                = false;
+	double          radius = 0.0; // of an ellipse: geometric mean of the semi-axes
+	double elongation      = 1.0; // longer semi-axis over the radius, radius over the shorter one
+	Eigen::Vector3d lines =
+		Eigen::Vector3d::Zero(); // direction of the scan lines, where there are any
+	Quadric  coefficients         = Quadric::Zero();
+	Leverage leverageCoefficients = Leverage::Zero(); // stays so in a robust fit
+	double   scale                = 0.0;              // of the residuals, a length
+	double   effectiveCount       = 0.0;              // (sum W)^2 / sum W^2
+	bool     valid                = false;
 
 	SurfacePatch() = default;
 	SurfacePatch(const Eigen::Vector3d& origin, const Eigen::Vector3d& normal, double radius) :
@@ -49,6 +53,10 @@ struct SurfacePatch {
 	{
 	}
 
+	// Turned so that x is along the scan lines.
+	void setFrame(const Eigen::Vector3d& normal);
+	// Tangential coordinates, in semi-axes, of an offset from the origin.
+	Eigen::Vector2d toPlane(const Eigen::Vector3d& d) const;
 	Local toLocal(const Eigen::Vector3d& p) const;
 	double height(double x, double y) const;
 	Eigen::Vector2d gradient(double x, double y) const;

@@ -279,6 +279,77 @@ TEST(RobustDenoising, CountsCopiesOfAPointAsOne)
 	}
 }
 
+// z = 1.2 sin(w x) cos(w y) over 24 x 24, w = 2 pi / 15, on lines along x that are `ratio` times as far apart as their
+// points; noise along z.
+struct ScannedWave {
+	static constexpr double side = 24.0;
+	PointCloud              cloud; // in the unit frame
+	double                  diagonal = std::sqrt(2.0) * side;
+
+	static double height(double x, double y)
+	{
+		constexpr double w = 2.0 * EIGEN_PI / 15.0;
+		return 1.2 * std::sin(w * x) * std::cos(w * y);
+	}
+	ScannedWave(double step, double ratio, double noise)
+	{
+		samples::Random       random(9, 3);
+		std::vector<Vector3d> points;
+		for (double y = 0.0; y < side; y += step * ratio) {
+			const double begin = random.uniform(0.0, step);
+			for (double x = begin; x < side; x += step)
+				points.emplace_back(x, y, height(x, y) + noise * random.normal3().x());
+		}
+		cloud.positions.resize(3, points.size());
+		for (std::size_t i = 0; i < points.size(); ++i)
+			cloud.positions.col(i) = points[i] / diagonal;
+		cloud.normals = Vector3d::UnitZ().replicate(1, points.size());
+	}
+	// Root mean square of the heights over the surface.
+	double rms(const Matrix3Xd& positions) const
+	{
+		double sum = 0.0;
+		for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+			const Vector3d p = positions.col(i) * diagonal;
+			const double   e = p.z() - height(p.x(), p.y());
+			sum += e * e;
+		}
+		return std::sqrt(sum / double(positions.cols()));
+	}
+};
+
+TEST(RobustDenoising, SeesFromScanLineToScanLine)
+{
+	const struct {
+		double ratio, remaining;
+	} cases[] = {{5.0, 0.17}, {8.0, 0.2}, {12.0, 0.3}};
+	for (const auto& c : cases) {
+		SCOPED_TRACE(c.ratio);
+		constexpr double  noise = 0.02;
+		const ScannedWave noisy(0.1, c.ratio, noise), exact(0.1, c.ratio, 0.0);
+		const auto        result = denoiseRobustly(noisy.cloud);
+		EXPECT_LT(noisy.rms(result.positions), c.remaining * noise);
+		EXPECT_NEAR(result.pointDeviation * noisy.diagonal, noise, 0.12 * noise);
+		EXPECT_LT(exact.rms(denoiseRobustly(exact.cloud).positions), 0.0005);
+	}
+}
+
+TEST(RobustDenoising, ScanLinesInAnyOrderAndOnAnyNumberOfThreads)
+{
+	const ScannedWave  noisy(0.15, 8.0, 0.02);
+	std::vector<Index> order(noisy.cloud.size());
+	std::iota(order.begin(), order.end(), 0);
+	std::shuffle(order.begin(), order.end(), std::mt19937(1));
+	const int threads = omp_get_max_threads();
+	omp_set_num_threads(1);
+	const auto result = denoiseRobustly(noisy.cloud);
+	omp_set_num_threads(3);
+	const auto other = denoiseRobustly(columnsOf(noisy.cloud, order));
+	omp_set_num_threads(threads);
+	for (Index i = 0; i < noisy.cloud.size(); ++i)
+		ASSERT_EQ(other.positions.col(i), result.positions.col(order[i]));
+}
+
 TEST(RobustDenoising, NeedsNoMoreOfNormalsThanMostOfTheirSides)
 {
 	std::mt19937                     random(5);

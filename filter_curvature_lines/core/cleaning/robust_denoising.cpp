@@ -388,14 +388,14 @@ Candidate RobustDenoiser::smoothCandidate(const Progress& progress) const
 		c                     = candidate(guide, options, m_everywhere, part.sub(0.6, 1.0, stage));
 		start                 = factor / arcStep;
 	}
-	if (m_input.lines.any())
+	if (m_input.lines.any() && m_offEdges.size() == m_test.size())
 		correct(c, factor, progress.sub(0.8, 1.0, stage));
 	return c;
 }
 
 // Across scan lines patches have to be so wide that the shape limits them, not the noise. A second blend, of what the
 // first one leaves, allows still wider ones. Patches over an edge do not lose weight here, because purity would take
-// the shape of wide ones for an edge; where that harms, the smooth result stays.
+// the shape of wide ones for an edge: not for clouds with edges, and where it harms, the smooth result stays.
 void RobustDenoiser::correct(Candidate& smooth, double factor, const Progress& progress) const
 {
 	std::vector<Index> test, targets;

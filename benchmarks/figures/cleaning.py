@@ -37,6 +37,15 @@ def true_shape_figures(cloud: Cloud, selection: Selection) -> Figures:
     return {"inliers selected, %": 100.0 * len(lost) / len(cloud.positions), "worst ball, %": 100.0 * worst}
 
 
+def mixed_pixel_figures(cloud: Cloud, selection: Selection) -> Figures:
+    """With the share selected of each part that has no outliers."""
+    figures = selection_figures(cloud, selection)
+    for name, mask in cloud.parts.items():
+        if name:
+            figures[f"{name} selected, %"] = 100.0 * float(selection.outliers[mask].mean())
+    return figures
+
+
 def part_selection_figures(cloud: Cloud, selection: Selection) -> Figures:
     figures: Figures = {}
     for name, mask in cloud.parts.items():

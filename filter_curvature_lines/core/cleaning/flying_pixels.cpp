@@ -47,12 +47,11 @@ constexpr double longestSheet = 0.5;
 constexpr double farthestEnd  = 1.0; // as longestSheet, of one end of a sheet with missing pixels
 constexpr double linkReach    = 2.0; // times the distance to the 6th neighbour
 
-// Lone pixels: neighbours looked at, those whose nearest point is at the median distance within the tolerance, the distance
-// to the nearest and second nearest over these medians, and to the 6th over the least around.
+// Lone pixels: neighbours looked at, those whose nearest point is at the median distance within the tolerance; distance to
+// the 6th nearest point over the least around.
 constexpr Index  rasterNeighbors = 24;
 constexpr Index  regularOnes     = 12;
 constexpr double regular         = 0.1;
-constexpr double alone           = 1.4;
 constexpr double loneSparseness  = 1.3;
 constexpr double loneOpposite    = -0.95;
 // A cloud is a raster when this share of a sample of so many points has nearly all neighbours at the median distance.
@@ -170,7 +169,7 @@ NearestTwo nearestTwo(const VoterCloud& cloud, Index i)
 }
 
 struct Raster {
-	double first = 0.0, second = 0.0; // medians of the neighbours' nearestTwo
+	double second      = 0.0; // nearestTwo, median over the neighbours
 	Index  regularOnes = 0;
 };
 
@@ -183,12 +182,12 @@ Raster rasterAround(const VoterCloud& cloud, Index i)
 			first.push_back(two.first);
 			second.push_back(two.second);
 		}
-	Raster raster;
-	raster.first  = medianInPlace(first);
-	raster.second = medianInPlace(second);
+	Raster       raster;
+	const double usual = medianInPlace(first);
+	raster.second      = medianInPlace(second);
 	raster.regularOnes =
 		static_cast<Index>(std::count_if(first.begin(), first.end(), [&](double d) {
-			return std::abs(d - raster.first) <= regular * raster.first;
+			return std::abs(d - usual) <= regular * usual;
 		}));
 	return raster;
 }
@@ -244,14 +243,17 @@ std::vector<char> findFlyingPixels(const VoterCloud& cloud, const Progress& prog
 }
 
 std::vector<char> findLoneMixedPixels(
-	const VoterCloud& cloud, const std::vector<char>& rejected, const Progress& progress)
+	const VoterCloud&        cloud,
+	const std::vector<char>& candidates,
+	double                   isolation,
+	const Progress&          progress)
 {
-	std::vector<char>  flagged(rejected.size(), 0);
+	std::vector<char>  flagged(candidates.size(), 0);
 	std::vector<Index> judged;
-	for (std::size_t i = 0; i < rejected.size(); ++i)
-		if (rejected[i])
+	for (std::size_t i = 0; i < candidates.size(); ++i)
+		if (candidates[i])
 			judged.push_back(static_cast<Index>(i));
-	if (static_cast<Index>(rejected.size()) < thinning * fewestSample || judged.empty() ||
+	if (static_cast<Index>(candidates.size()) < thinning * fewestSample || judged.empty() ||
 	    !isRaster(cloud, progress.sub(0.0, 0.5, "Finding flying pixels")))
 		return flagged;
 	const Surroundings around(cloud);
@@ -259,13 +261,13 @@ std::vector<char> findLoneMixedPixels(
 		static_cast<Index>(judged.size()),
 		progress.sub(0.5, 1.0, "Finding flying pixels"),
 		[&](Index k) {
-			const Index      i      = judged[k];
-			const Raster     raster = rasterAround(cloud, i);
-			const NearestTwo own    = nearestTwo(cloud, i);
-			const double     least  = around.leastCrowding(i);
-			if (raster.regularOnes < regularOnes || !(own.first > alone * raster.first) ||
-		        !(own.second > alone * raster.second) ||
-		        !(cloud.crowding[i] > loneSparseness * least))
+			const Index  i     = judged[k];
+			const double least = around.leastCrowding(i);
+			if (!(cloud.crowding[i] > loneSparseness * least))
+				return;
+			const Raster raster = rasterAround(cloud, i);
+			if (raster.regularOnes < regularOnes ||
+		        !(nearestTwo(cloud, i).second > isolation * raster.second))
 				return;
 			std::vector<End> ends;
 			around.ends(i, cloud.crowding[i], std::numeric_limits<double>::infinity(), ends);

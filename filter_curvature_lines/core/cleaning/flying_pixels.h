@@ -14,9 +14,13 @@ namespace curvature_lines {
 // sheet of one pixel per row of the sensor can be. `cloud.active` is not looked at. Does not depend on the order of points.
 std::vector<char> findFlyingPixels(const VoterCloud& cloud, const Progress& progress = {});
 
-// One flag per point: of those rejected, the ones that stand alone between two surfaces of a regular scan, each
-// farther from its neighbours than these are from theirs. Too few per sheet for findFlyingPixels.
+// One flag per point: of the candidates, those that stand alone between two surfaces of a regular scan. Their second
+// nearest point is `isolation` times as far as that of their neighbours (the nearest is often another mixed pixel). They are
+// too few per sheet for findFlyingPixels.
 std::vector<char> findLoneMixedPixels(
-	const VoterCloud& cloud, const std::vector<char>& rejected, const Progress& progress = {});
+	const VoterCloud&        cloud,
+	const std::vector<char>& candidates,
+	double                   isolation,
+	const Progress&          progress = {});
 
 } // namespace curvature_lines

@@ -74,6 +74,10 @@ constexpr double rejectedPeers    = 0.4;
 constexpr double suspiciousShare = 0.002;
 constexpr double reliefShare     = 0.5;
 
+// Isolation of lone mixed pixels (findLoneMixedPixels) before the votes, and of those that the votes reject.
+constexpr double certainIsolation  = 5.0;
+constexpr double rejectedIsolation = 1.8;
+
 class RobustVote {
 public:
 	RobustVote(const CloudIndex& index, double sensitivity, const Progress& progress);
@@ -93,6 +97,7 @@ private:
 	void rejectByVerdict(std::vector<char>& rejected);
 	void rejectGroups(std::vector<char>& rejected, const Progress& progress) const;
 	bool replaceRejected(const std::vector<char>& rejected);
+	void addFlying(const std::vector<char>& more);
 	void rejectFlying(std::vector<char>& rejected);
 	Index neighborsWanted(const OutlierVoter& voter) const;
 	Index size() const { return static_cast<Index>(m_positions.cols()); }
@@ -335,9 +340,18 @@ bool RobustVote::replaceRejected(const std::vector<char>& rejected)
 // Voters fitted before, to measure the noise, have seen them.
 void RobustVote::rejectFlyingPixels(const Progress& progress)
 {
-	m_flying =
-		findFlyingPixels({m_positions, m_crowding, m_order.rank, m_search, {}, m_search}, progress);
+	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
+	m_flying = findFlyingPixels(cloud, progress.sub(0.0, 0.5, "Finding flying pixels"));
+	const std::vector<char> all(size(), 1);
+	addFlying(findLoneMixedPixels(
+		cloud, all, certainIsolation, progress.sub(0.5, 1.0, "Finding flying pixels")));
 	rejectFlying(m_rejected);
+}
+
+void RobustVote::addFlying(const std::vector<char>& more)
+{
+	for (Index i = 0; i < size(); ++i)
+		m_flying[i] |= more[i];
 }
 
 void RobustVote::rejectFlying(std::vector<char>& rejected)
@@ -369,11 +383,9 @@ bool RobustVote::vote(const Progress& progress)
 
 void RobustVote::restoreSurfaces(const Progress& progress)
 {
-	const VoterCloud        cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
-	const std::vector<char> lone =
-		findLoneMixedPixels(cloud, m_rejected, progress.sub(0.0, 0.2, "Finding flying pixels"));
-	for (Index i = 0; i < size(); ++i)
-		m_flying[i] |= lone[i];
+	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
+	addFlying(findLoneMixedPixels(
+		cloud, m_rejected, rejectedIsolation, progress.sub(0.0, 0.2, "Finding flying pixels")));
 	const Progress part = progress.sub(0.2, 1.0, "Restoring groups");
 	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
 	restorePoints(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);

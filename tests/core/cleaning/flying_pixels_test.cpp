@@ -183,9 +183,9 @@ TEST(FlyingPixels, PixelsBesidePostsAreFoundOneByOne)
 	const Scene       scene = groundWithPosts(true, 2);
 	const Prepared    prepared(scene.positions);
 	std::vector<char> all(scene.mixed.size(), 1);
-	const Counts      counts = countsOf(scene, findLoneMixedPixels(prepared.cloud(), all));
-	EXPECT_GE(counts.found, 0.7);
-	EXPECT_LE(counts.taken, 0.001);
+	const Counts      counts = countsOf(scene, findLoneMixedPixels(prepared.cloud(), all, 5.0));
+	EXPECT_GE(counts.found, 0.3);
+	EXPECT_LE(counts.taken, 0.0002);
 	const Counts rejected = countsOf(scene, rejectedOf(scene.positions));
 	EXPECT_GE(rejected.found, 0.85);
 	EXPECT_LE(rejected.taken, 0.001);
@@ -209,7 +209,7 @@ TEST(FlyingPixels, TinyAndDegenerateCloudsHaveNone)
 		const Prepared          prepared(Matrix3Xd::Zero(3, size));
 		const std::vector<char> all(size, 1), none(size, 0);
 		EXPECT_EQ(findFlyingPixels(prepared.cloud()), none);
-		EXPECT_EQ(findLoneMixedPixels(prepared.cloud(), all), none);
+		EXPECT_EQ(findLoneMixedPixels(prepared.cloud(), all, 5.0), none);
 	}
 }
 

@@ -22,6 +22,8 @@ namespace curvature_lines {
 
 namespace {
 
+constexpr char stage[] = "Restoring points";
+
 // By experiment, as in small_surfaces.cpp.
 
 // Noise in spacings up to which every rejected point is judged again. With more, only where small surfaces are known to be
@@ -43,6 +45,10 @@ constexpr Index  sparseNeighbors = 20;
 // Of the members of a surface, those that are accepted; and how many accepted ones are next to the point.
 constexpr double      acceptedShare  = 0.25;
 constexpr std::size_t acceptedBeside = 3;
+// Of the rejected among the so many nearest points this share must have surfaces through them as well, as on a part of the
+// shape they have. Without this a fifth of the impulses on half the points of a mesh are taken back.
+constexpr Index  companyNeighbors = 20;
+constexpr double companyShare     = 0.75;
 // The noise around a point is the median over this many accepted points of the so many nearest.
 constexpr Index noiseNeighbors = 25, noisePoints = 9;
 // Points of a surface of its own: more than a cluster. It touches the accepted points where acceptedBeside of them are
@@ -55,6 +61,8 @@ constexpr std::size_t fewestContact = 3;
 struct Candidate {
 	Index                       point = 0;
 	std::vector<PassingSurface> surfaces;
+	bool                        judged = false; // small surfaces were asked
+	bool inCompany = false; // most of its rejected neighbours have surfaces through them, too
 };
 
 class PointRestoration {
@@ -84,7 +92,7 @@ private:
 	}
 	bool votersMiss(Index i) const;
 	double noiseAround(Index i, double ofVoters) const;
-	std::vector<PassingSurface> surfacesOf(Index i) const;
+	void findSurfaces(Candidate& candidate) const;
 	void findCandidates(const Progress& progress);
 	bool continues(const Candidate& candidate) const;
 	bool touches(const Candidate& candidate) const;
@@ -123,37 +131,51 @@ bool PointRestoration::votersMiss(Index i) const
 	return !deviations.empty() && quantileInPlace(deviations, missQuantile) >= missDeviation;
 }
 
-std::vector<PassingSurface> PointRestoration::surfacesOf(Index i) const
+void PointRestoration::findSurfaces(Candidate& candidate) const
 {
+	const Index  i          = candidate.point;
 	const double sparseness = ownSpacing(i) / votersSpacing(i);
 	if (!(sparseness <= sparsest)) // also when both are 0
-		return {};
+		return;
 	const double height =
 		m_verdicts[i].heightError > 0.0 ? m_verdicts[i].heightError : m_heightDeviation;
 	const double ofVoters = height / votersSpacing(i);
 	const double noise    = noiseAround(i, ofVoters);
 	const bool   all      = noise <= mostNoise || (noise <= mostNoiseMissed && votersMiss(i));
 	if (!all && !(noise <= mostShapeLike && noise <= shapeLike * ofVoters))
-		return {};
-	std::vector<PassingSurface> surfaces = surfacesThrough(m_cloud, i, {noise, m_sensitivity, all});
+		return;
+	candidate.judged   = true;
+	candidate.surfaces = surfacesThrough(m_cloud, i, {noise, m_sensitivity, all});
 	if (sparseness > sparse)
-		surfaces.erase(
+		candidate.surfaces.erase(
 			std::remove_if(
-				surfaces.begin(),
-				surfaces.end(),
+				candidate.surfaces.begin(),
+				candidate.surfaces.end(),
 				[](const PassingSurface& surface) { return surface.neighbors < sparseNeighbors; }),
-			surfaces.end());
-	return surfaces;
+			candidate.surfaces.end());
 }
 
 void PointRestoration::findCandidates(const Progress& progress)
 {
+	std::vector<Index>     at(m_rejected.size(), -1); // among all
 	std::vector<Candidate> all;
 	for (std::size_t i = 0; i < m_rejected.size(); ++i)
-		if (m_rejected[i])
-			all.push_back({static_cast<Index>(i), {}});
-	parallelFor(static_cast<Index>(all.size()), progress, [&](Index c) {
-		all[c].surfaces = surfacesOf(all[c].point);
+		if (m_rejected[i]) {
+			at[i] = static_cast<Index>(all.size());
+			all.push_back({static_cast<Index>(i)});
+		}
+	parallelFor(static_cast<Index>(all.size()), progress.sub(0.0, 0.9, stage), [&](Index c) {
+		findSurfaces(all[c]);
+	});
+	parallelFor(static_cast<Index>(all.size()), progress.sub(0.9, 1.0, stage), [&](Index c) {
+		double judged = 0.0, passed = 0.0;
+		for (const Index j :
+		     m_cloud.all.nearest(m_cloud.positions.col(all[c].point), companyNeighbors + 1))
+			if (at[j] >= 0 && at[j] != c) {
+				judged += all[at[j]].judged;
+				passed += !all[at[j]].surfaces.empty();
+			}
+		all[c].inCompany = passed >= companyShare * judged;
 	});
 	for (Candidate& candidate : all)
 		if (!candidate.surfaces.empty())
@@ -203,7 +225,8 @@ bool PointRestoration::restoreIf(const Restored& restored)
 
 bool PointRestoration::restoreContinued()
 {
-	return restoreIf([&](std::size_t c) { return continues(m_candidates[c]); });
+	return restoreIf(
+		[&](std::size_t c) { return m_candidates[c].inCompany && continues(m_candidates[c]); });
 }
 
 bool PointRestoration::restoreParts()

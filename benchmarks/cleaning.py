@@ -214,9 +214,7 @@ def sharp(settings: Settings) -> str:
 def scan_lines_and_twins(settings: Settings) -> str:
     left = {1.0: (0.12, 0.12), 5.0: (0.15, 0.12), 8.0: (0.2, 0.12), 12.0: (0.3, 0.12)}
     noisy = [
-        Case(
-            f"lines {ratio:g}:1", scanned(ratio, WAVE_NOISE), {"RMS ratio": Target(*bounds)}, quick=ratio == 12.0
-        )
+        Case(f"lines {ratio:g}:1", scanned(ratio, WAVE_NOISE), {"RMS ratio": Target(*bounds)}, quick=ratio == 12.0)
         for ratio, bounds in left.items()
     ]
     exact = [

@@ -28,12 +28,13 @@ using Eigen::Vector3d;
 
 // Fair samples of the cloud, each that many times thinner than the one before, down to so many points: they show what is
 // around a point at all distances in little time.
-constexpr Index  thinning     = 8;
-constexpr Index  fewestSample = 20;
-constexpr Index  nearestSeen  = 100; // points of each sample
-constexpr Index  nearestAsked = 24;  // points of a sample that tell how dense it is around
-constexpr double sparser =
-	2.5; // over the median of the cloud: asked of all samples, not of the densest alone
+constexpr Index thinning     = 8;
+constexpr Index fewestSample = 20;
+constexpr Index nearestSeen  = 100; // points of each sample
+constexpr Index nearestAsked = 24;  // points of a sample that tell how dense it is around
+// Distance to the 6th neighbour over its median in the cloud: no flying pixel has less. Without this, points of a surface
+// between dense clusters of outliers would be pixels.
+constexpr double sparser = 2.5;
 
 // Distance to the 6th neighbour over that of the surfaces at both ends: of seeds, and of points linked to them.
 constexpr double seedSparseness = 8.0;
@@ -68,6 +69,7 @@ class Surroundings {
 public:
 	explicit Surroundings(const VoterCloud& cloud);
 	bool empty() const { return m_samples.empty(); }
+	bool isSparse(Index i) const { return m_cloud.crowding[i] > m_sparse; }
 	double leastCrowding(Index i) const;
 	// Points of all samples around point i up to a distance with crowding below a limit.
 	void ends(Index i, double crowdingBelow, double within, std::vector<End>& found) const;
@@ -102,14 +104,13 @@ Surroundings::Surroundings(const VoterCloud& cloud) : m_cloud(cloud)
 }
 
 // Ends of a sheet through the point are no farther than the sheet is long. In the middle of one the nearest points of the
-// densest sample are all on the sheet; few points are sparse enough to look farther.
+// densest sample are all on the sheet.
 double Surroundings::leastCrowding(Index i) const
 {
-	const Vector3d    p      = m_cloud.positions.col(i);
-	const double      own    = m_cloud.crowding[i];
-	const std::size_t levels = own > m_sparse ? m_samples.size() : 1;
-	double            least  = own;
-	for (std::size_t s = 0; s < levels; ++s)
+	const Vector3d p     = m_cloud.positions.col(i);
+	const double   own   = m_cloud.crowding[i];
+	double         least = own;
+	for (std::size_t s = 0; s < m_samples.size(); ++s)
 		for (const Index k : m_searches[s].nearest(p, nearestAsked)) {
 			const double crowding = m_cloud.crowding[m_samples[s].points[k]];
 			if (crowding < least &&
@@ -216,6 +217,8 @@ std::vector<char> findFlyingPixels(const VoterCloud& cloud, const Progress& prog
 	if (around.empty())
 		return flagged;
 	parallelFor(size, progress, [&](Index i) {
+		if (!around.isSparse(i))
+			return;
 		const double crowding = cloud.crowding[i];
 		const double least    = around.leastCrowding(i);
 		sparse[i]             = least * linkSparseness < crowding;

@@ -203,6 +203,21 @@ TEST(FlyingPixels, DoNotDependOnTheOrderOfThePoints)
 	EXPECT_GT(std::count(flags.begin(), flags.end(), char(1)), 20);
 }
 
+// Dense clusters of outliers on both sides of a surface make no sparse sheet of it.
+TEST(FlyingPixels, ASurfaceBetweenDenseClustersHasNone)
+{
+	samples::SampleRequest request;
+	request.surface                = "torus";
+	request.points                 = 1000;
+	request.farOutliers            = 0.05;
+	request.nearOutliers           = 0.05;
+	request.seed                   = 2;
+	const auto              sample = samples::generate(request);
+	const Prepared          prepared(sample.positions);
+	const std::vector<char> flagged = findFlyingPixels(prepared.cloud());
+	EXPECT_LE(std::count(flagged.begin(), flagged.end(), char(1)), 50); // the far outliers
+}
+
 TEST(FlyingPixels, TinyAndDegenerateCloudsHaveNone)
 {
 	for (const Index size : {1, 7, 30, 300}) {

@@ -446,7 +446,7 @@ Index countOf(const OutlierResult& result)
 OutlierResult rejectByRobustVotes(
 	const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
 {
-	const OutlierResult first =
+	OutlierResult first =
 		rejectOnce(index, sensitivity, rounds, progress.sub(0.0, 0.5, "Rejecting outliers"));
 	if (double(countOf(first)) <= suspiciousShare * double(index.size()))
 		return first;

@@ -154,8 +154,8 @@ Neighborhood::Neighborhood(
 }
 
 template<class Surface>
-PassingSurface
-passing(const Neighborhood& near, const Surface& surface, std::vector<Index> on, double reach)
+PassingSurface passing(
+	const Neighborhood& near, const Surface& surface, const std::vector<Index>& on, double reach)
 {
 	PassingSurface found;
 	found.neighbors = near.size();
@@ -189,7 +189,7 @@ void addHeights(
 	}
 	const double deviation = std::sqrt(squares / double(near.size() - quadricUnknowns));
 	if (deviation <= near.heightDeviation && double(on.size()) >= fewestOn * double(near.size()))
-		found.push_back(passing(near, fit, std::move(on), reach));
+		found.push_back(passing(near, fit, on, reach));
 }
 
 // Every implicit quadric that fits the neighbours has to pass through the point: the points of a plane lie on that plane
@@ -217,7 +217,7 @@ void addImplicit(const Neighborhood& near, double reach, std::vector<PassingSurf
 		if (fit.quadrics[0].distance(near.points.col(k)) > near.reach)
 			return;
 	}
-	PassingSurface surface = passing(near, fit.quadrics[0], std::move(on), reach);
+	PassingSurface surface = passing(near, fit.quadrics[0], on, reach);
 	if (!surface.joined.empty())
 		surface.reach *= std::min(
 			mostSheetFactor,

@@ -3,7 +3,6 @@
 #include "scan_lines.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>

@@ -11,10 +11,9 @@
 
 #include "analytic_surfaces.h"
 #include "neighborhoods.h"
-#include "outlier_result.h"
 #include "outlier_voter.h"
 #include "point_cloud.h"
-#include "robust_outliers.h"
+#include "rejected_points.h"
 #include "shuffled_order.h"
 
 namespace curvature_lines::test {
@@ -133,18 +132,6 @@ struct Prepared {
 	std::vector<Index>  rank, none;
 	std::vector<double> crowding;
 };
-
-std::vector<char> rejectedOf(const Matrix3Xd& positions)
-{
-	Matrix3Xd normals = Matrix3Xd::Zero(3, positions.cols());
-	normals.row(2).setOnes();
-	const PreparedCloud prepared = prepareCloud(positions, normals);
-	const OutlierResult result   = rejectByRobustVotes(prepared.cloud, 3.5, 3);
-	std::vector<char>   rejected(positions.cols(), 0);
-	for (Index i = 0; i < prepared.cloud.size(); ++i)
-		rejected[prepared.source[i]] = result.outlier[i];
-	return rejected;
-}
 
 // Without this unit none of them is found.
 TEST(FlyingPixels, ThoseOfADepthCameraAreFound)

@@ -11,11 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
-#include "cloud_index.h"
 #include "neighborhoods.h"
-#include "outlier_result.h"
 #include "point_cloud.h"
-#include "robust_outliers.h"
+#include "rejected_points.h"
 #include "thin_shapes.h"
 
 namespace curvature_lines::test {
@@ -23,18 +21,6 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-
-std::vector<char> rejectedOf(const Matrix3Xd& positions)
-{
-	Matrix3Xd normals = Matrix3Xd::Zero(3, positions.cols());
-	normals.row(2).setOnes();
-	const PreparedCloud prepared = prepareCloud(positions, normals);
-	const OutlierResult result   = rejectByRobustVotes(prepared.cloud, 3.5, 3);
-	std::vector<char>   rejected(positions.cols(), 0);
-	for (Index i = 0; i < prepared.cloud.size(); ++i)
-		rejected[prepared.source[i]] = result.outlier[i];
-	return rejected;
-}
 
 Index countOf(const std::vector<char>& rejected, Index first, Index end)
 {

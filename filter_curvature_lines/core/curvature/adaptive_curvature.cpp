@@ -23,6 +23,7 @@
 #include "quantile.h"
 #include "robust_curvature.h"
 #include "robust_kernel.h"
+#include "scale_mixture.h"
 #include "surface_anchors.h"
 
 namespace curvature_lines {

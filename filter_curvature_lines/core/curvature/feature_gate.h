@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include "irls.h"
-#include "members.h"
 #include "operating_region.h"
 #include "point_cloud.h"
 

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "irls.h"
-#include "members.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 

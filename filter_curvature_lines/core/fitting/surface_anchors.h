@@ -11,7 +11,6 @@
 
 #include "anchor_fits.h"
 #include "local_surface.h"
-#include "members.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "point_subsets.h"

@@ -10,6 +10,7 @@ from pathlib import Path
 from harness.report import write_result
 
 USUAL_SEEDS = 5
+USUAL_TARGETS = (0, 2000, 5000)  # vertices; 0: the filter's own choice
 
 
 @dataclass(frozen=True)
@@ -20,11 +21,16 @@ class Settings:
     peers: bool = True
     data: Path | None = None  # the folder of scans
     seed_count: int = USUAL_SEEDS
+    asked_targets: tuple[int, ...] = USUAL_TARGETS
     parameters: dict[str, object] = field(default_factory=dict)  # of our filter, beyond its defaults
 
     @property
     def seeds(self) -> range:
         return range(1, 1 + (1 if self.quick else self.seed_count))
+
+    @property
+    def targets(self) -> tuple[int, ...]:
+        return self.asked_targets[:1] if self.quick else self.asked_targets
 
     @property
     def seeds_in_words(self) -> str:
@@ -59,6 +65,10 @@ class Benchmark:
         return add
 
 
+def numbers(text: str) -> tuple[int, ...]:
+    return tuple(int(word) for word in text.split(","))
+
+
 OPTIONS: dict[str, tuple[str, dict]] = {
     "quick": ("--quick", {"action": "store_true", "help": "one seed and fewer clouds, to the screen"}),
     "peers": ("--without-peers", {"action": "store_true", "help": "only ours"}),
@@ -70,6 +80,15 @@ OPTIONS: dict[str, tuple[str, dict]] = {
             "default": USUAL_SEEDS,
             "metavar": "N",
             "help": "seeds 1 to N of every cloud (default: %(default)s)",
+        },
+    ),
+    "targets": (
+        "--targets",
+        {
+            "type": numbers,
+            "default": USUAL_TARGETS,
+            "metavar": "N,N",
+            "help": "vertices asked for, 0: the filter's own choice (default: 0,2000,5000)",
         },
     ),
 }
@@ -87,7 +106,8 @@ def parser_of(benchmark: Benchmark) -> argparse.ArgumentParser:
         parser.add_argument(flag, **details)
     if benchmark.data:
         parser.add_argument("--data", type=Path, metavar="FOLDER", help=f"where {benchmark.data}")
-    parser.set_defaults(experiments=[], quick=False, without_peers=False, data=None, seeds=USUAL_SEEDS, scale_mode=None)
+    parser.set_defaults(experiments=[], quick=False, without_peers=False, data=None, scale_mode=None)
+    parser.set_defaults(seeds=USUAL_SEEDS, targets=USUAL_TARGETS)
     return parser
 
 
@@ -102,6 +122,8 @@ def _command(benchmark: Benchmark, given: argparse.Namespace) -> str:
         words.append(f"--scale-mode {given.scale_mode}")
     if given.seeds != USUAL_SEEDS:
         words.append(f"--seeds {given.seeds}")
+    if given.targets != USUAL_TARGETS:
+        words.append(f"--targets {','.join(map(str, given.targets))}")
     return " ".join(words)
 
 
@@ -117,6 +139,7 @@ def main(benchmark: Benchmark, arguments: list[str] | None = None) -> None:
         peers=not given.without_peers,
         data=given.data,
         seed_count=max(1, given.seeds),
+        asked_targets=given.targets,
         parameters={"scale_mode": given.scale_mode} if given.scale_mode else {},
     )
     to_screen = bool(given.experiments) or given.quick

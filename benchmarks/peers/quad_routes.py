@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import importlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pymeshlab
@@ -16,6 +17,7 @@ from peers.child_process import Arrays, in_child, serve
 
 PACKAGES = ("pynanoinstantmeshes", "pyQuadriFlow")
 QUADS = {"instant": "Instant Meshes", "flow": "QuadriFlow", "pairs": "PyMeshLab tri-to-quad"}
+CREASE_ANGLES = {"instant": 0.0, "instant_off": -1.0, "instant_30": 30.0}  # degrees; the package's own choice is 0
 TRIM = 4.0  # spacings: what Poisson adds further from the points of an open surface
 
 
@@ -30,7 +32,7 @@ class RouteMesh:
 def poisson_then_quads(
     positions: np.ndarray, normals: np.ndarray, quads: str, depth: int, faces: int, spacing: float = 0.0
 ) -> RouteMesh | None:
-    """``quads``: a key of QUADS; ``spacing`` of the points if the surface is open. None if it crashed or found nothing."""
+    """``quads``: a key of QUADS or CREASE_ANGLES; ``spacing`` of the points if the surface is open. None if it crashed or found nothing."""
     cloud = {"positions": positions, "normals": normals}
     found = in_child("peers.quad_routes", cloud, quads, depth, faces, spacing)
     if found is None or len(found["faces"]) == 0:
@@ -70,13 +72,13 @@ def _by_pairs(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
     return meshes.current_mesh().vertex_matrix(), found
 
 
-def _by_instant_meshes(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
+def _by_instant_meshes(meshes: pymeshlab.MeshSet, faces: int, crease_angle: float) -> Mesh:
     from pynanoinstantmeshes import remesh
 
     mesh = meshes.current_mesh()
     vertices, triangles = mesh.vertex_matrix().astype(np.float32), mesh.face_matrix().astype(np.uint32)
     # The package always splits every face into four.
-    return remesh(vertices, triangles, max(1, faces // 4), deterministic=True)
+    return remesh(vertices, triangles, max(1, faces // 4), creaseAngle=crease_angle, deterministic=True)
 
 
 def _by_quadriflow(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
@@ -93,8 +95,12 @@ def _by_quadriflow(meshes: pymeshlab.MeshSet, faces: int) -> Mesh:
     return np.array(flow["vertices"]), flow["faces"]
 
 
-_BY = {"instant": _by_instant_meshes, "flow": _by_quadriflow, "pairs": _by_pairs}
-_MODULES = {"instant": "pynanoinstantmeshes", "flow": "pyQuadriFlow.pyQuadriFlow"}
+_BY: dict[str, Callable[[pymeshlab.MeshSet, int], Mesh]] = {
+    "flow": _by_quadriflow,
+    "pairs": _by_pairs,
+    **{key: partial(_by_instant_meshes, crease_angle=angle) for key, angle in CREASE_ANGLES.items()},
+}
+_MODULES = {"flow": "pyQuadriFlow.pyQuadriFlow", **dict.fromkeys(CREASE_ANGLES, "pynanoinstantmeshes")}
 
 
 def _child(cloud: Arrays, quads: str, depth: str, faces: str, spacing: str) -> Arrays:

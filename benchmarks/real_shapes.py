@@ -5,16 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from clouds.thin_shapes import REAL_SHAPES
+from clouds.views import looks_at
 from clouds.whole_shapes import EXACT, Shape, real
 from figures.mesh import PolygonMesh
 from figures.whole_mesh import whole_figures
 from harness.command_line import Benchmark, Settings, main
 from harness.comparison import Figures
 from harness.our_filters import run_on
+from harness.pictures import draw, write_sheet
 from harness.report import markdown_table, progress
 from harness.shared import PIPELINE, layer
 from harness.verdicts import Target, number, verdict
@@ -22,11 +25,15 @@ from peers.quad_columns import check_packages
 from peers.whole_columns import OURS, QUADRIFLOW, ROUTES, route
 
 BENCHMARK = Benchmark(
-    "real_shapes", "Whole meshes of real shapes", options=("quick", "peers", "targets"), data="the scans are"
+    "real_shapes",
+    "Whole meshes of real shapes",
+    options=("quick", "peers", "targets", "pictures"),
+    data="the scans are",
 )
 
 STRUCTURE_ALONE = 10000  # vertices asked for: from here on no peers and no distances
 TOLD = ("uncovered_share", "largest_gap", "folded_faces", "limb_vertices", "dropped_components", "dropped_points")
+PICTURED = (OURS, QUADRIFLOW, "Instant Meshes, 30°")  # from left to right
 SHOWN = ("c rms", "c max", "a rms", "a max", "irregular", "sj < 0", "folded", "parts", "χ", "rims")  # while it runs
 
 EVERYWHERE = {"sj < 0": Target(0.0, 0.0), "folded": Target(0.0, 0.0), "wrong structure": Target(0.0, 0.0)}
@@ -114,6 +121,19 @@ def run_at(name: str, shape: Shape, asked: int, settings: Settings) -> Run:
     return run
 
 
+def write_pictures(name: str, shape: Shape, run: Run, folder: Path) -> None:
+    """The methods side by side, a row per look at the shape."""
+    rows = [
+        [
+            draw(run.meshes.get(method), look.camera, look.framed(shape.truth))
+            for method in PICTURED
+            if method in run.figures
+        ]
+        for look in looks_at(name)
+    ]
+    write_sheet(folder / f"{name.replace(' ', '_')}_{run.asked or 'default'}.png", rows)
+
+
 _RUNS: dict[tuple[str, int], Run] = {}  # of this process: the last section sums them up
 
 
@@ -127,7 +147,9 @@ def runs_of(name: str, settings: Settings) -> list[Run]:
         if shape is None:
             return []
         for asked in todo:
-            _RUNS[name, asked] = run_at(name, shape, asked, settings)
+            run = _RUNS[name, asked] = run_at(name, shape, asked, settings)
+            if settings.pictures:
+                write_pictures(name, shape, run, settings.pictures)
     return [_RUNS[name, asked] for asked in settings.targets]
 
 

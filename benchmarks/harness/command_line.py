@@ -22,6 +22,7 @@ class Settings:
     data: Path | None = None  # the folder of scans
     seed_count: int = USUAL_SEEDS
     asked_targets: tuple[int, ...] = USUAL_TARGETS
+    pictures: Path | None = None  # the folder they go to
     parameters: dict[str, object] = field(default_factory=dict)  # of our filter, beyond its defaults
 
     @property
@@ -91,6 +92,7 @@ OPTIONS: dict[str, tuple[str, dict]] = {
             "help": "vertices asked for, 0: the filter's own choice (default: 0,2000,5000)",
         },
     ),
+    "pictures": ("--pictures", {"type": Path, "metavar": "FOLDER", "help": "where pictures of the results go as well"}),
 }
 
 
@@ -106,7 +108,7 @@ def parser_of(benchmark: Benchmark) -> argparse.ArgumentParser:
         parser.add_argument(flag, **details)
     if benchmark.data:
         parser.add_argument("--data", type=Path, metavar="FOLDER", help=f"where {benchmark.data}")
-    parser.set_defaults(experiments=[], quick=False, without_peers=False, data=None, scale_mode=None)
+    parser.set_defaults(experiments=[], quick=False, without_peers=False, data=None, scale_mode=None, pictures=None)
     parser.set_defaults(seeds=USUAL_SEEDS, targets=USUAL_TARGETS)
     return parser
 
@@ -140,6 +142,7 @@ def main(benchmark: Benchmark, arguments: list[str] | None = None) -> None:
         data=given.data,
         seed_count=max(1, given.seeds),
         asked_targets=given.targets,
+        pictures=given.pictures,
         parameters={"scale_mode": given.scale_mode} if given.scale_mode else {},
     )
     to_screen = bool(given.experiments) or given.quick

@@ -1,5 +1,5 @@
 # The benchmarks run rarely, and what they import changes: all of them load, what they share does what their tables rest
-# on, three small experiments run, and the page about them names every script, experiment and option.
+# on, four small experiments run, and the page about them names every script, experiment and option.
 # SPDX-License-Identifier: GPL-3.0-or-later
 import importlib
 import re
@@ -148,6 +148,7 @@ def test_an_experiment_that_does_not_exist(benchmark, capsys):
         ("curvature", ["random_normals", "--quick", "--without-peers"], 2),
         ("paper_figures", ["edge", "--quick"], 6),
         ("quad_mesh", ["small", "--quick", "--without-peers"], 26),
+        ("real_shapes", ["capsule", "--quick", "--without-peers"], 5),
     ],
 )
 def test_a_small_experiment_runs(table, arguments, rows, capsys):

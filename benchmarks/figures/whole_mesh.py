@@ -65,7 +65,7 @@ class Faces:
 
 
 def folded_faces(shape: Shape, mesh: PolygonMesh) -> np.ndarray:
-    """Mask: looks against a neighbour over an edge, or against each of the points nearest to it.
+    """Mask: faces that look against each of the points nearest to them; of the others, those against a neighbour over an edge.
 
     A rim of the shape itself may be as sharp: not folded are two faces there that lie on the surface and look as one of
     the points near each of them does.
@@ -81,7 +81,8 @@ def folded_faces(shape: Shape, mesh: PolygonMesh) -> np.ndarray:
     if len(at_edge):
         on_surface = shape.distance(faces.centers[at_edge]) < ON_SURFACE * np.sqrt(faces.areas[at_edge])
         right[at_edge] = on_surface & (agreement[at_edge] > 0.5)
-    wrong = sharp & ~(right[first] & right[second])
+    explained = (right[first] & right[second]) | folded[first] | folded[second]
+    wrong = sharp & ~explained
     folded[faces.pairs[wrong].ravel()] = True
     return folded
 

@@ -40,7 +40,10 @@ def draw(mesh: Drawn | None, camera: Camera, framed: np.ndarray) -> np.ndarray:
     if mesh is None:
         return np.full((height, width, 3), 255, np.uint8)
     import pyvista
+    from vtkmodules.vtkCommonCore import vtkLogger
 
+    # Without an X server VTK finds another way to draw by itself, but says so each time.
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     plotter = pyvista.Plotter(off_screen=True, window_size=[width, height])
     plotter.set_background("white")
     faces = pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.triangles)

@@ -4,12 +4,16 @@
 import importlib
 import re
 
+import numpy as np
 import pytest
 
 from helpers import CHECKOUT
 
 pytest.importorskip("pymeshlab_curvature_lines", reason="tests a plugin file, not the package")
 
+from clouds.whole_shapes import EXACT, Shape, from_tangent_planes  # noqa: E402
+from figures.mesh import PolygonMesh  # noqa: E402
+from figures.whole_mesh import folded_faces, scaled_jacobians  # noqa: E402
 from harness import command_line  # noqa: E402
 from harness.command_line import Benchmark, Settings, main  # noqa: E402
 from harness.comparison import Case, Column, Comparison, Outcome, one, seed_rows  # noqa: E402
@@ -113,7 +117,7 @@ def test_a_comparison_beside_peers():
 @pytest.fixture
 def benchmark(monkeypatch):
     """One of two sections, and the result files it writes instead of real ones."""
-    made = Benchmark("made", "Made", options=("quick", "peers", "seeds", "scale_mode"), data="nothing is")
+    made = Benchmark("made", "Made", options=("quick", "peers", "seeds", "targets", "scale_mode"), data="nothing is")
     made.introduction(lambda settings: f"Over {settings.seeds_in_words}.\n")
     made.experiment("first", "First")(lambda settings: f"{settings.parameters}\n")
     made.experiment("second", "Second")(lambda settings: f"{settings.peers}\n")
@@ -123,9 +127,11 @@ def benchmark(monkeypatch):
 
 
 def test_the_whole_benchmark_writes_its_file(benchmark):
-    main(benchmark, ["--data", "scans", "--without-peers", "--scale-mode", "Paper", "--seeds", "3"])
+    main(
+        benchmark, ["--data", "scans", "--without-peers", "--scale-mode", "Paper", "--seeds", "3", "--targets", "0,300"]
+    )
     body = "Over seeds 1 to 3.\n\n## First\n\n{'scale_mode': 'Paper'}\n\n## Second\n\nFalse\n"
-    command = "made.py --data FOLDER --without-peers --scale-mode Paper --seeds 3"
+    command = "made.py --data FOLDER --without-peers --scale-mode Paper --seeds 3 --targets 0,300"
     assert benchmark.written == [("made", command, "Made", body)]
 
 
@@ -140,6 +146,38 @@ def test_an_experiment_that_does_not_exist(benchmark, capsys):
     with pytest.raises(SystemExit):
         main(benchmark, ["third"])
     assert "no experiment is called third" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_points_of_an_exact_shape_lie_on_it(name):
+    shape = EXACT[name].shape()
+    step = 0.01 * shape.diagonal
+    assert shape.distance(shape.truth).max() < 1e-9 * shape.diagonal
+    moved = shape.distance(shape.truth + step * shape.normals)
+    assert np.median(moved) == pytest.approx(step, rel=0.01) and moved.max() < 1.02 * step
+
+
+FLAT_GRID = np.array([[x, y, 0.0] for y in range(9) for x in range(9)])
+
+
+def cells(moved=()):
+    """A mesh of the squares of the grid, some of its vertices (index, position) elsewhere."""
+    vertices = FLAT_GRID.copy()
+    for vertex, position in moved:
+        vertices[vertex] = position
+    faces = [np.array([i, i + 1, i + 10, i + 9]) + 9 * j for j in range(8) for i in range(8)]
+    return PolygonMesh(vertices, faces)
+
+
+def test_folded_faces_and_jacobians_of_a_flat_grid():
+    up = np.tile([0.0, 0.0, 1.0], (len(FLAT_GRID), 1))
+    shape = Shape(FLAT_GRID, up, from_tangent_planes(FLAT_GRID, up))
+    assert not folded_faces(shape, cells()).any()
+    assert scaled_jacobians(cells()) == pytest.approx(1.0)
+    # Vertex 40 is the middle one; beyond the opposite corner of one of its squares, that square is turned over.
+    across = cells([(40, [5.6, 5.6, 0.0])])
+    assert np.flatnonzero(folded_faces(shape, across)).tolist() == [36]
+    assert scaled_jacobians(across)[36] < 0.0 < scaled_jacobians(across)[0]
 
 
 @pytest.mark.parametrize(

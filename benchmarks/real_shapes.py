@@ -244,7 +244,9 @@ def introduction(settings: Settings) -> str:
         text += (
             "\nPeers on the same points with normals, at our number of faces: PyMeshLab's screened Poisson reconstruction at "
             "depth 8 (of open surfaces what lies further than four spacings from the points is cut off), then quads by "
-            "PyPI's `pyQuadriFlow`, or by `pynanoinstantmeshes` with its crease angle off (-1) and at 30 degrees.\n"
+            "PyPI's `pyQuadriFlow`, or by `pynanoinstantmeshes` with its crease angle off (-1) and at 30 degrees. QuadriFlow is "
+            "asked up to three times until it comes near our number; what it keeps of thin parts changes with the last "
+            "digits of its input.\n"
         )
     return text
 

@@ -30,11 +30,22 @@ class RouteMesh:
 
 
 def poisson_then_quads(
-    positions: np.ndarray, normals: np.ndarray, quads: str, depth: int, faces: int, spacing: float = 0.0
+    positions: np.ndarray,
+    normals: np.ndarray,
+    quads: str,
+    depth: int,
+    faces: int,
+    spacing: float = 0.0,
+    threads: int = 0,
 ) -> RouteMesh | None:
-    """``quads``: a key of QUADS or CREASE_ANGLES; ``spacing`` of the points if the surface is open. None if it crashed or found nothing."""
+    """None if it crashed or found nothing.
+
+    ``quads``: a key of QUADS or CREASE_ANGLES; ``spacing`` of the points if the surface is open. ``threads`` of
+    Poisson, 0: one per core. The surfaces of more than one differ in their last digits from run to run, and quads of them
+    can differ a lot.
+    """
     cloud = {"positions": positions, "normals": normals}
-    found = in_child("peers.quad_routes", cloud, quads, depth, faces, spacing)
+    found = in_child("peers.quad_routes", cloud, quads, depth, faces, spacing, threads)
     if found is None or len(found["faces"]) == 0:
         return None
     split = np.split(found["faces"], np.cumsum(found["sizes"])[:-1])
@@ -44,9 +55,9 @@ def poisson_then_quads(
 Mesh = tuple[np.ndarray, Sequence]  # vertices (N x 3), faces
 
 
-def _poisson(meshes: pymeshlab.MeshSet, depth: int, spacing: float) -> None:
+def _poisson(meshes: pymeshlab.MeshSet, depth: int, spacing: float, threads: int) -> None:
     """Adds the surface as a layer; of an open one (spacing > 0) without what is far from the points."""
-    meshes.generate_surface_reconstruction_screened_poisson(depth=depth)
+    meshes.generate_surface_reconstruction_screened_poisson(depth=depth, **({"threads": threads} if threads else {}))
     if spacing <= 0.0:
         return
     surface = meshes.current_mesh_id()
@@ -103,7 +114,7 @@ _BY: dict[str, Callable[[pymeshlab.MeshSet, int], Mesh]] = {
 _MODULES = {"flow": "pyQuadriFlow.pyQuadriFlow", **dict.fromkeys(CREASE_ANGLES, "pynanoinstantmeshes")}
 
 
-def _child(cloud: Arrays, quads: str, depth: str, faces: str, spacing: str) -> Arrays:
+def _child(cloud: Arrays, quads: str, depth: str, faces: str, spacing: str, threads: str) -> Arrays:
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=cloud["positions"], v_normals_matrix=cloud["normals"]))
     if quads in _MODULES:
@@ -111,7 +122,7 @@ def _child(cloud: Arrays, quads: str, depth: str, faces: str, spacing: str) -> A
     reset_peak()
     loaded = peak_megabytes()
     start = time.perf_counter()
-    _poisson(meshes, int(depth), float(spacing))
+    _poisson(meshes, int(depth), float(spacing), int(threads))
     vertices, found = _BY[quads](meshes, int(faces))
     seconds, megabytes = time.perf_counter() - start, peak_megabytes() - loaded
     return {

@@ -184,9 +184,6 @@ def real(name: str, data: Path | None) -> Shape | None:
     return Shape(positions, normals, distance, STRUCTURES.get(name))
 
 
-SEED = 1
-
-
 @dataclass(frozen=True)
 class Exact:
     make: Callable[[int], thin_shapes.Cloud]
@@ -195,8 +192,8 @@ class Exact:
     clean: Callable[[Points], Points] | None = None  # moves the points onto the surface
     with_normals: bool = True
 
-    def shape(self) -> Shape:
-        cloud = self.make(SEED)
+    def shape(self, seed: int = 1) -> Shape:
+        cloud = self.make(seed)
         return Shape(
             cloud.positions,
             cloud.outward,
@@ -224,7 +221,7 @@ EXACT = {
     "sparse_cap": Exact(thin_shapes.sparse_cap, from_spheres(np.zeros((1, 3)), 1.0)),
     "many_parts": Exact(
         thin_shapes.many_parts,
-        from_spheres(thin_shapes.part_centers(SEED), thin_shapes.PART_RADIUS),
+        from_spheres(thin_shapes.part_centers(), thin_shapes.PART_RADIUS),
         Structure(90, 180),
         with_normals=False,
     ),

@@ -13,7 +13,7 @@ import pymeshlab
 
 from clouds import thin_shapes
 from clouds.scans import found, loaded, meshlab_sample, oriented_vertices
-from clouds.spacing import NearestPoints
+from clouds.spacing import NearestPoints, median_nearest_distance
 from clouds.thin_shapes import REAL_SHAPES, Points
 
 Distance = Callable[[Points], np.ndarray]  # of points (N x 3) from the true surface, not negative
@@ -54,6 +54,11 @@ class Shape:
     def nearest(self) -> NearestPoints:
         """Among the points of the truth."""
         return NearestPoints(self.truth)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Random points are twice as far apart as from the nearest one."""
+        return 2.0 * median_nearest_distance(self.positions)
 
     @property
     def is_open(self) -> bool:

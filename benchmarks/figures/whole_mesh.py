@@ -20,7 +20,9 @@ POOR_JACOBIAN = 0.2
 INVERTED = -1e-6  # scaled Jacobian, below the rounding of a peer in single precision
 FOLD = np.cos(np.radians(150.0))  # of the normals of two faces at an edge
 JUDGING_POINTS = 8  # near a face, that say which way it should look
-ON_SURFACE = 0.15  # of the root of a face's area: a sharp rim of the shape is no fold if the faces there are so near
+# A sharp rim of the shape is no fold if the faces there are so near to it:
+ON_SURFACE = 0.15  # of the root of a face's area, or
+ON_POINTS = 0.3  # of the spacing of the points
 ALONG_AXIS = np.cos(np.radians(45.0))  # of an edge and the fillet it runs along
 
 
@@ -79,7 +81,8 @@ def folded_faces(shape: Shape, mesh: PolygonMesh) -> np.ndarray:
     at_edge = np.unique(faces.pairs[sharp])
     right = np.zeros(len(mesh.faces), bool)
     if len(at_edge):
-        on_surface = shape.distance(faces.centers[at_edge]) < ON_SURFACE * np.sqrt(faces.areas[at_edge])
+        reach = np.maximum(ON_SURFACE * np.sqrt(faces.areas[at_edge]), ON_POINTS * shape.spacing)
+        on_surface = shape.distance(faces.centers[at_edge]) < reach
         right[at_edge] = on_surface & (agreement[at_edge] > 0.5)
     explained = (right[first] & right[second]) | folded[first] | folded[second]
     wrong = sharp & ~explained

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
-from clouds.spacing import median_nearest_distance
 from clouds.whole_shapes import Shape
 from figures.mesh import PolygonMesh, distances
 from harness.comparison import Figures
@@ -18,8 +17,7 @@ CLOSE, NEAR = 0.03, 0.05  # to that number: no other request; still to be compar
 
 
 def made_by(shape: Shape, method: str, faces: int) -> RouteMesh | None:
-    # Random points are twice as far apart as from the nearest one.
-    spacing = 2.0 * median_nearest_distance(shape.positions) if shape.is_open else 0.0
+    spacing = shape.spacing if shape.is_open else 0.0
     try:
         return poisson_then_quads(shape.positions, shape.normals, ROUTES[method], DEPTH, faces, spacing, threads=1)
     except RuntimeError as failure:  # the others of the table are wanted nevertheless

@@ -162,7 +162,7 @@ void PointRestoration::findCandidates(const Progress& progress)
 	for (std::size_t i = 0; i < m_rejected.size(); ++i)
 		if (m_rejected[i]) {
 			at[i] = static_cast<Index>(all.size());
-			all.push_back({static_cast<Index>(i)});
+			all.emplace_back().point = static_cast<Index>(i);
 		}
 	parallelFor(static_cast<Index>(all.size()), progress.sub(0.0, 0.9, stage), [&](Index c) {
 		findSurfaces(all[c]);

@@ -27,8 +27,9 @@ inline CrossedSurface crossed(TriangulatedSurface surface)
 	CrossedSurface result;
 	const Index    n        = surface.size();
 	result.scaffold.mesh    = surface.mesh;
-	result.scaffold.spacing = std::sqrt(surface.mesh.vertexAreas().sum() / n);
-	result.scaffold.cell    = 2.0 * result.scaffold.spacing;
+	const double spacing    = std::sqrt(surface.mesh.vertexAreas().sum() / n);
+	result.scaffold.spacing.setConstant(n, spacing);
+	result.scaffold.size.setConstant(n, 2.0 * spacing);
 	result.scaffold.source.resize(n);
 	std::iota(result.scaffold.source.begin(), result.scaffold.source.end(), 0);
 	result.scaffold.creaseEdge.assign(surface.mesh.edgeCount(), 0);

@@ -161,7 +161,7 @@ void PointRestoration::findCandidates(const Progress& progress)
 	std::vector<Candidate> all;
 	for (std::size_t i = 0; i < m_rejected.size(); ++i)
 		if (m_rejected[i]) {
-			at[i] = static_cast<Index>(all.size());
+			at[i]                    = static_cast<Index>(all.size());
 			all.emplace_back().point = static_cast<Index>(i);
 		}
 	parallelFor(static_cast<Index>(all.size()), progress.sub(0.0, 0.9, stage), [&](Index c) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -29,6 +28,11 @@ struct Side {
 	int   corner;
 	Index low() const { return std::min(from, to); }
 	Index high() const { return std::max(from, to); }
+	// Of the edge: the lower vertex, then the higher.
+	std::uint64_t edge() const
+	{
+		return (static_cast<std::uint64_t>(low()) << 32) | static_cast<std::uint32_t>(high());
+	}
 };
 
 std::vector<Side> sortedSides(const std::vector<Triangle>& triangles)
@@ -39,15 +43,14 @@ std::vector<Side> sortedSides(const std::vector<Triangle>& triangles)
 		for (int c = 0; c < 3; ++c)
 			sides.push_back({triangles[t][c], triangles[t][(c + 1) % 3], static_cast<Index>(t), c});
 	std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-		return std::make_tuple(a.low(), a.high(), a.triangle) <
-		       std::make_tuple(b.low(), b.high(), b.triangle);
+		return a.edge() != b.edge() ? a.edge() < b.edge() : a.triangle < b.triangle;
 	});
 	return sides;
 }
 
 bool sameEdge(const Side& a, const Side& b)
 {
-	return a.low() == b.low() && a.high() == b.high();
+	return a.edge() == b.edge();
 }
 
 } // namespace

@@ -284,6 +284,7 @@ FieldMesh meshOfPositionField(
 	clock.book("creases");
 	PositionFieldMeshOptions meshing;
 	meshing.targetVertices = targetVertices(index, surface.field, options.tracing);
+	meshing.automatic      = options.tracing.targetVertices == 0 && options.tracing.epsilon <= 0.0;
 	meshing.anisotropy     = options.anisotropy;
 	meshing.noise          = surface.noise;
 	meshing.mesh           = options.mesh;

@@ -33,6 +33,8 @@ constexpr double stiffness = 1e-3;
 // The correction changes the density by no more than a factor of 2: without a bound cells shrink at
 // singular points of spheres, and spacing grows at the tips of ellipsoids.
 const double mostCorrection = std::log(2.0);
+// Area of a triangle over the square of a side, below which it has none: far above rounding errors.
+constexpr double leastTriangle = 1e-9;
 // Weight of a crease vertex in the mean of a triangle: its cross lies between two faces and is wrong for both.
 constexpr double creaseShare = 1e-3;
 
@@ -100,9 +102,11 @@ LineDensity correction(
 			}
 		}
 	}
+	// In cells: where these are small, even spacing costs as much as elsewhere.
+	const Eigen::VectorXd cells = area.cwiseProduct(density.colwise().prod().transpose());
 	for (Index v = 0; v < n; ++v)
 		for (int f = 0; f < 2; ++f)
-			entries.emplace_back(2 * v + f, 2 * v + f, evenness * area[v] / area.sum() + 1e-300);
+			entries.emplace_back(2 * v + f, 2 * v + f, evenness * cells[v] / cells.sum() + 1e-300);
 	SparseReal matrix(2 * n, 2 * n);
 	matrix.setFromTriplets(entries.begin(), entries.end());
 	const Eigen::SimplicialLDLT<SparseReal> solver(matrix);
@@ -151,7 +155,11 @@ TriangleField triangleField(
 	for (int c = 0; c < 3; ++c) {
 		const Vector3d opposite =
 			mesh.vertices.col(t[(c + 2) % 3]) - mesh.vertices.col(t[(c + 1) % 3]);
-		result.gradient.col(c) = result.normal.cross(opposite) / (2.0 * result.area + 1e-300);
+		// A triangle without area, as of three samples of a crease, has no say: its gradients are infinite.
+		const bool flat = result.area <= leastTriangle * opposite.squaredNorm();
+		result.gradient.col(c).setZero();
+		if (!flat)
+			result.gradient.col(c) = result.normal.cross(opposite) / (2.0 * result.area);
 		const Index                   v      = t[c];
 		const Vector3d                normal = field.normals.col(v);
 		const std::array<Vector3d, 2> arms   = {
@@ -206,6 +214,8 @@ LineDensity lineDensity(
 	const double        area = mesh.vertexAreas().sum();
 	LineDensity         density =
 		LineDensity::Constant(2, mesh.vertexCount(), std::sqrt(options.targetVertices / area));
+	if (scaffold.size.size() > 0)
+		density = scaffold.size.cwiseInverse().transpose().replicate(2, 1);
 	if (options.anisotropy > 1.0) {
 		const LineDensity bends = bending(scaffold, field, curvature);
 		const double      most  = std::sqrt(options.anisotropy);

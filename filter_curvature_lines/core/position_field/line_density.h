@@ -1,5 +1,5 @@
-// How many lines of each family a unit of length meets: the target number of vertices, closer lines across
-// strong bends, and the correction that makes the lines end as seldom as possible.
+// How many lines of each family a unit of length meets: as the sizes of the scaffold and the target number of vertices
+// ask for, closer lines across strong bends, and the correction that makes the lines end as seldom as possible.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
@@ -16,7 +16,8 @@
 namespace curvature_lines {
 
 struct LineDensityOptions {
-	double targetVertices = 1600.0;
+	double targetVertices =
+		1600.0; // as many as the sizes of the scaffold ask for, or another number
 	// largest ratio of the spacings of both families that curvature asks for
 	double anisotropy = 1.5;
 	// How much uneven spacing costs against lines that end. In a prototype 100, 30, 10, 1 left 44, 2, 0, 0

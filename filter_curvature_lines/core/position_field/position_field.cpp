@@ -125,6 +125,28 @@ void addToDiagonal(SparseReal& matrix, const Eigen::VectorXd& values)
 		matrix.coeffRef(i, i) += values[i];
 }
 
+// Of every set of families (by unknown pair: its name), of length 1; inverse iteration. `mass`: of every unknown.
+Eigen::VectorXd smallestEigenvectors(
+	const Solver& solver, const std::vector<Index>& set, const Eigen::VectorXd& mass)
+{
+	const auto      pairs = static_cast<Index>(set.size());
+	Eigen::VectorXd x(2 * pairs);
+	for (Index i = 0; i < pairs; ++i) { // any start that is not orthogonal to the smallest eigenvectors
+		const double angle = fullTurn * std::fmod(0.6180339887498949 * i, 1.0);
+		x.segment<2>(2 * i) << std::cos(angle), std::sin(angle);
+	}
+	std::vector<double> length(pairs);
+	for (int k = 0; k < eigenIterations; ++k) {
+		x = solver.solve(mass.cwiseProduct(x)).eval();
+		std::fill(length.begin(), length.end(), 0.0);
+		for (Index i = 0; i < pairs; ++i)
+			length[set[i]] += mass[2 * i] * x.segment<2>(2 * i).squaredNorm();
+		for (Index i = 0; i < pairs; ++i)
+			x.segment<2>(2 * i) /= std::sqrt(length[set[i]]) + 1e-300;
+	}
+	return x;
+}
+
 Eigen::VectorXcd periodicStart(
 	const TriangleMesh&         mesh,
 	const CrossField&           field,
@@ -140,26 +162,8 @@ Eigen::VectorXcd periodicStart(
 		mass.segment<4>(4 * v).setConstant(area[v]);
 	SparseReal matrix = periodicEnergy(mesh, field, rise, options.startDrift, diagonal);
 	addToDiagonal(matrix, shift * diagonal.mean() / mass.mean() * mass);
-	Solver          solver(matrix);
-	Eigen::VectorXd x(4 * n);
-	for (Index v = 0; v < n; ++v) // any start that is not orthogonal to the smallest eigenvectors
-		for (int k = 0; k < 2; ++k) {
-			const double angle = fullTurn * std::fmod(0.6180339887498949 * (2 * v + k), 1.0);
-			x.segment<2>(4 * v + 2 * k) << std::cos(angle), std::sin(angle);
-		}
-	std::vector<double> length(2 * n);
-	for (int k = 0; k < eigenIterations; ++k) {
-		x = solver.solve(mass.cwiseProduct(x)).eval();
-		std::fill(length.begin(), length.end(), 0.0);
-		for (Index i = 0; i < 2 * n; ++i)
-			length[set[i]] += area[i / 2] * x.segment<2>(2 * i).squaredNorm();
-		for (Index i = 0; i < 2 * n; ++i)
-			x.segment<2>(2 * i) /= std::sqrt(length[set[i]]) + 1e-300;
-	}
 
-	// With pins the phase is no eigenvector but the solution for psi = 1 at the pins. A set of families
-	// without any keeps its eigenvector: its solution would be zero.
-	std::vector<char> pinned(2 * n, 0);
+	std::vector<char> pinned(2 * n, 0); // by name of set
 	Eigen::VectorXd   hard = Eigen::VectorXd::Zero(4 * n), right = Eigen::VectorXd::Zero(4 * n);
 	const double      weight = pinWeight * diagonal.maxCoeff();
 	for (Index i = 0; i < 2 * n; ++i) {
@@ -169,12 +173,22 @@ Eigen::VectorXcd periodicStart(
 		hard.segment<2>(2 * i).setConstant(weight);
 		right[2 * i] = weight;
 	}
-	if (std::count(pinned.begin(), pinned.end(), char(1)) > 0) {
+	const auto isPinned = [&](Index name) { return pinned[name] != 0; };
+	Eigen::VectorXd x   = Eigen::VectorXd::Zero(4 * n);
+	Solver          solver;
+	solver.analyzePattern(matrix);
+	if (!std::all_of(set.begin(), set.end(), isPinned)) {
+		solver.factorize(matrix);
+		x = smallestEigenvectors(solver, set, mass);
+	}
+	// With pins the phase is no eigenvector but the solution for psi = 1 at the pins. A set of families
+	// without any keeps its eigenvector: its solution would be zero.
+	if (std::any_of(set.begin(), set.end(), isPinned)) {
 		addToDiagonal(matrix, hard);
 		solver.factorize(matrix);
 		const Eigen::VectorXd solution = solver.solve(right);
 		for (Index i = 0; i < 2 * n; ++i)
-			if (pinned[set[i]])
+			if (isPinned(set[i]))
 				x.segment<2>(2 * i) = solution.segment<2>(2 * i);
 	}
 	Eigen::VectorXcd phase(n);

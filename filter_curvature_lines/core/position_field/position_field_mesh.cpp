@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "position_field_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "cloud_index.h"
 #include "cross_field.h"
 #include "curvature_field.h"
+#include "face_caps.h"
 #include "feature_alignment.h"
 #include "line_density.h"
 #include "mesh_finishing.h"
@@ -24,11 +26,14 @@
 #include "rim_fit.h"
 #include "rims.h"
 #include "scaffold.h"
+#include "scaffold_refinement.h"
 #include "scaffold_sites.h"
+#include "sizing_field.h"
 #include "surface_arrangement.h"
 #include "surface_curves.h"
 #include "surface_graph.h"
 #include "surface_projection.h"
+#include "thin_creases.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
@@ -38,6 +43,12 @@ namespace {
 // Error of the number of vertices beyond which the density is corrected, once: the accuracy that is
 // promised for it.
 constexpr double countTolerance = 0.03;
+
+// Points whose normals agree with a vertex's (dot product) are of its side of the surface; looked for among so many.
+constexpr double sameSide     = 0.2;
+constexpr Index  closestAsked = 16;
+// Projections of a vertex on a rim.
+constexpr int rimSteps = 2;
 
 struct FieldMesh {
 	SurfaceCurves      curves;
@@ -70,22 +81,68 @@ FieldMesh meshOfTargetSize(
 	const Scaffold&                 scaffold,
 	const CrossField&               field,
 	LineDensity                     density,
+	double                          target,
 	const PhasePins&                pins,
 	const SurfaceFeatures&          features,
 	const PositionFieldMeshOptions& options,
 	const Progress&                 progress)
 {
 	FieldMesh    first = meshOfDensity(scaffold, field, density, pins, features, options);
-	const double ratio = first.arrangement.mesh.vertexCount() / options.targetVertices;
+	const double ratio = first.arrangement.mesh.vertexCount() / target;
 	progress.report(0.7);
 	if (!(ratio > 0.0) || std::abs(ratio - 1.0) <= countTolerance)
 		return first;
 	density /= std::sqrt(ratio);
 	FieldMesh    second = meshOfDensity(scaffold, field, density, pins, features, options);
-	const double next   = second.arrangement.mesh.vertexCount() / options.targetVertices;
+	const double next   = second.arrangement.mesh.vertexCount() / target;
 	if (std::abs(next - 1.0) < std::abs(ratio - 1.0))
 		return second;
 	return first;
+}
+
+// The sizes anew, now that the area is known. Returns how many vertices they ask for.
+double resized(Scaffold& scaffold, const SizingField& sizing, const SizingOptions& options)
+{
+	const Eigen::VectorXd areas   = scaffold.mesh.vertexAreas();
+	const Eigen::VectorXd feature = sizing.feature(scaffold.place);
+	const double          uniform = std::sqrt(areas.sum() / options.targetVertices);
+	const double          body =
+        options.automatic
+					 ? uniform
+					 : bodyFor(areas, feature, options.targetVertices, options.mostBody * uniform);
+	scaffold.size = feature.cwiseMin(body);
+	return (areas.array() / scaffold.size.array().square()).sum();
+}
+
+// Of every vertex: it lies on an edge of one face.
+std::vector<char> onRim(const PolygonMesh& mesh)
+{
+	std::vector<std::pair<Index, Index>> sides;
+	for (Index f = 0; f < mesh.faceCount(); ++f) {
+		const NeighborLists::Row face = mesh.faces[f];
+		for (Index k = 0; k < face.size(); ++k)
+			sides.emplace_back(face[k], face[(k + 1) % face.size()]);
+	}
+	std::sort(sides.begin(), sides.end());
+	std::vector<char> rim(mesh.vertexCount(), 0);
+	for (const auto& [a, b] : sides)
+		if (!std::binary_search(sides.begin(), sides.end(), std::make_pair(b, a)))
+			rim[a] = rim[b] = 1;
+	return rim;
+}
+
+// The nearest point whose normal agrees; the nearest of all where none of several does.
+Index closestOnSide(
+	const PointCloud&      cloud,
+	const NeighborSearch&  search,
+	const Eigen::Vector3d& p,
+	const Eigen::Vector3d& normal)
+{
+	const std::vector<Index> near = search.nearest(p, closestAsked);
+	for (const Index i : near)
+		if (cloud.normals.col(i).dot(normal) > sameSide)
+			return i;
+	return near[0];
 }
 
 void projectVertices(
@@ -95,17 +152,29 @@ void projectVertices(
 	PolygonMesh&             mesh,
 	const Progress&          progress)
 {
-	const PointCloud&     cloud  = index.cloud();
-	const NeighborSearch& search = index.search();
+	const PointCloud&       cloud  = index.cloud();
+	const NeighborSearch&   search = index.search();
+	const std::vector<char> rim    = onRim(mesh);
 	parallelFor(mesh.vertexCount(), progress, [&](Index v) {
-		if (fixed[v])
+		if (fixed[v] && !rim[v])
 			return;
-		const Eigen::Vector3d p       = mesh.vertices.col(v);
-		const Index           closest = search.nearest(p, 1)[0];
-		const SurfaceSample   sample =
-			projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
-		mesh.vertices.col(v) = sample.position;
-		mesh.normals.col(v)  = sample.normal;
+		Eigen::Vector3d p       = mesh.vertices.col(v);
+		const Index     closest = closestOnSide(cloud, search, p, mesh.normals.col(v));
+		if (!rim[v]) {
+			const SurfaceSample sample =
+				projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
+			mesh.vertices.col(v) = sample.position;
+			mesh.normals.col(v)  = sample.normal;
+			return;
+		}
+		// Beside its rim the surface is known on one side only: along the normal, where the rim already is.
+		for (int step = 0; step < rimSteps; ++step) {
+			const SurfaceSample sample =
+				projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
+			p += (sample.position - p).dot(sample.normal) * sample.normal;
+			mesh.normals.col(v) = sample.normal;
+		}
+		mesh.vertices.col(v) = p;
 	});
 }
 
@@ -120,14 +189,22 @@ PositionFieldMeshResult buildPositionFieldMesh(
 {
 	PositionFieldMeshResult result;
 	ScaffoldOptions         forScaffold = options.scaffold;
-	forScaffold.targetVertices          = options.targetVertices;
 	forScaffold.noise                   = options.noise;
 	forScaffold.closedRim               = options.mesh.closeHoles ? longestClosedHole : 0.0;
 	// A front over points that keep their noise folds, and lines on it turn back and cross.
 	const CloudIndex fitted =
 		curvature.height.size() > 0 ? onFittedSurface(index.cloud(), curvature) : index;
-	Scaffold scaffold =
-		buildScaffold(fitted, creases, forScaffold, progress.sub(0.0, 0.3, "Triangulating"));
+	SizingOptions forSizes;
+	forSizes.targetVertices    = options.targetVertices;
+	forSizes.automatic         = options.automatic;
+	const SizingField sizing   = sizingField(index, curvature, forSizes);
+	Scaffold          scaffold = buildScaffold(
+        fitted,
+        withoutThinLimbs(creases, index, sizing),
+        sizing,
+        forScaffold,
+        progress.sub(0.0, 0.3, "Triangulating"));
+	refineBends(scaffold);
 	const TriangleMesh& mesh = scaffold.mesh;
 	result.scaffoldVertices  = mesh.vertexCount();
 	result.scaffoldEuler     = mesh.eulerCharacteristic();
@@ -147,12 +224,19 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	const PhasePins        pins     = featurePins(alignment, field);
 	const SurfaceFeatures& features = alignment.features;
 	LineDensityOptions     wanted;
-	wanted.targetVertices = options.targetVertices;
+	wanted.targetVertices = resized(scaffold, sizing, forSizes);
 	wanted.anisotropy     = options.anisotropy;
 	LineDensity density   = lineDensity(scaffold, field, curvature, wanted);
 	progress.report(0.5);
-	FieldMesh meshed =
-		meshOfTargetSize(scaffold, field, std::move(density), pins, features, options, progress);
+	FieldMesh meshed = meshOfTargetSize(
+		scaffold,
+		field,
+		std::move(density),
+		wanted.targetVertices,
+		pins,
+		features,
+		options,
+		progress);
 	result.lineEnds           = meshed.lineEnds;
 	result.crossings          = meshed.arrangement.crossings;
 	result.repairedComponents = meshed.arrangement.repairedComponents;
@@ -163,12 +247,13 @@ PositionFieldMeshResult buildPositionFieldMesh(
 		result.lines.crossings = result.crossings;
 	}
 
-	const std::vector<char> onFeature = std::move(meshed.arrangement.onFeature);
-	result.mesh                       = std::move(meshed.arrangement.mesh);
+	std::vector<char> onFeature = std::move(meshed.arrangement.onFeature);
+	result.mesh                 = std::move(meshed.arrangement.mesh);
 	if (options.mesh.splitConcave)
 		result.mesh = withConvexFaces(result.mesh);
 	projectVertices(
 		index, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
+	result.caps = capBulgingFaces(fitted, curvature, result.mesh, onFeature);
 	if (options.mesh.triangulate)
 		result.mesh = triangulated(result.mesh);
 	result.topology = topologyOf(result.mesh);

@@ -19,6 +19,7 @@ namespace curvature_lines {
 
 struct PositionFieldMeshOptions {
 	double          targetVertices = 1600.0;
+	bool            automatic      = false; // SizingOptions::automatic
 	double          anisotropy = 1.5; // largest ratio of spacings that curvature asks for; 1: none
 	double          noise      = 0.0; // left in the cloud, a length
 	ScaffoldOptions scaffold;         // its target and noise are set from the above
@@ -33,7 +34,8 @@ struct PositionFieldMeshResult : FinishedMesh {
 	Index       droppedComponents  = 0; // too small for a mesh, or without any line
 	Index       repairedComponents = 0;
 	Index       filledHoles = 0, lostCreaseEdges = 0;
-	LineNetwork lines; // if keepLines
+	Index       caps = 0; // faces that went on to the tip of a part no line crosses
+	LineNetwork lines;    // if keepLines
 };
 
 // The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted

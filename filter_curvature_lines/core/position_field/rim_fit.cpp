@@ -211,7 +211,8 @@ private:
 		std::vector<Index>   owner(m_cloud.size(), -1);
 		parallelFor(m_cloud.size(), {}, [&](Index j) {
 			const Index i = search.nearest(m_cloud.positions.col(j), 1)[0];
-			if ((m_cloud.positions.col(j) - rimPositions.col(i)).norm() < depth * m_spacing &&
+			if ((m_cloud.positions.col(j) - rimPositions.col(i)).norm() <
+			        depth * m_spacing[vertexAt(i)] &&
 			    m_cloud.normals.col(j).dot(m_normals.col(vertexAt(i))) > sameSheet)
 				owner[j] = vertexAt(i);
 		});
@@ -229,14 +230,18 @@ private:
 				position(rim, place.k),
 				position(rim, place.k + 1) - position(rim, place.k - 1),
 				m_normals.col(rim.at(place.k)));
+			const double spacing = m_spacing[rim.at(place.k)];
 			for (const Index j : m_beside[rim.at(place.k)]) {
 				const double x = view.of(m_cloud.positions.col(j)).y();
-				m_inBand[rim.at(place.k)] += x < -gap() && x > -bandDepth * m_spacing;
+				m_inBand[rim.at(place.k)] += x < -gap(spacing) && x > -bandDepth * spacing;
 			}
 		}
 	}
 
-	double gap() const { return std::min(m_spacing + 2.0 * m_noise, mostGap * m_spacing); }
+	double gap(double spacing) const
+	{
+		return std::min(spacing + 2.0 * m_noise, mostGap * spacing);
+	}
 
 	Index vertexAt(std::size_t i) const { return m_rims[m_places[i].rim].at(m_places[i].k); }
 
@@ -287,8 +292,9 @@ private:
 				}
 			}
 		}
-		const Band& band = clear.length > 0.0 ? clear : all;
-		strip.density    = band.points / (band.length * (bandDepth * m_spacing - gap()));
+		const Band&  band    = clear.length > 0.0 ? clear : all;
+		const double spacing = m_spacing[rim.at(k)];
+		strip.density        = band.points / (band.length * (bandDepth * spacing - gap(spacing)));
 		return strip;
 	}
 
@@ -296,16 +302,17 @@ private:
 	// turns the view along that.
 	std::optional<Frontier> frontierOf(const Rim& rim, Index k, View& view, int side) const
 	{
-		Index  reach  = std::min(longestReach, rim.size() / 4);
-		Strip  strip  = unrolled(rim, k, view, side, reach);
-		Circle circle = circleAlong(strip.rim);
-		while (circle.winding > mostWinding * m_spacing && reach > shortestReach) {
+		const double spacing = m_spacing[rim.at(k)];
+		Index        reach   = std::min(longestReach, rim.size() / 4);
+		Strip        strip   = unrolled(rim, k, view, side, reach);
+		Circle       circle  = circleAlong(strip.rim);
+		while (circle.winding > mostWinding * spacing && reach > shortestReach) {
 			reach  = 2 * reach / 3;
 			strip  = unrolled(rim, k, view, side, reach);
 			circle = circleAlong(strip.rim);
 		}
 		// The band lies deeper than the rim, and where this bends around it is shorter.
-		const double middle  = 0.5 * (gap() + bandDepth * m_spacing);
+		const double middle  = 0.5 * (gap(spacing) + bandDepth * spacing);
 		const double density = strip.density / std::max(leastBand, 1.0 + circle.curvature * middle);
 		if (!(density > 0.0) || !std::isfinite(density))
 			return {};
@@ -314,7 +321,7 @@ private:
 		Index            count = 0;
 		for (const Vector2d& p : strip.points) {
 			seen.col(count) = circle.of(p);
-			count += seen(1, count) > -depth * m_spacing;
+			count += seen(1, count) > -depth * spacing;
 		}
 		return fitFrontier(
 			seen.leftCols(count),
@@ -330,7 +337,7 @@ private:
 		if (!view.tangent.allFinite())
 			return view.origin;
 		const auto   frontier = frontierOf(rim, k, view, 0);
-		const double most     = mostOffset * m_spacing;
+		const double most     = mostOffset * m_spacing[rim.at(k)];
 		return view.at(0.0, frontier ? std::clamp(frontier->value, -most, most) : 0.0);
 	}
 
@@ -363,13 +370,14 @@ private:
 		const double   s    = (w.dot(d[0]) - cosine * w.dot(d[1])) / det,
 					 t      = (cosine * w.dot(d[0]) - w.dot(d[1])) / det;
 		const Vector3d meet = 0.5 * (p[0] + s * d[0] + p[1] + t * d[1]);
-		return (meet - start).norm() < mostCornerOffset * m_spacing ? meet : start;
+		return (meet - start).norm() < mostCornerOffset * m_spacing[rim.at(k)] ? meet : start;
 	}
 
 	std::vector<Rim>&               m_rims;
 	const PointCloud&               m_cloud;
 	const Eigen::Matrix3Xd&         m_normals;
-	double                          m_noise, m_spacing;
+	double                          m_noise;
+	const Eigen::VectorXd&          m_spacing; // of every vertex
 	Eigen::Matrix3Xd&               m_positions;
 	std::vector<Place>              m_places;
 	std::vector<std::vector<Index>> m_beside; // of every vertex: points of the cloud

@@ -14,12 +14,13 @@
 #include "advancing_front.h"
 #include "cloud_index.h"
 #include "crease_recovery.h"
+#include "disjoint_sets.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "point_subsets.h"
 #include "progress.h"
-#include "quantile.h"
 #include "scaffold_sites.h"
+#include "sizing_field.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
@@ -28,18 +29,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The spacing is the median mean distance to so many neighbours, of so many points.
-constexpr Index spacingProbes    = 2000;
-constexpr Index spacingNeighbors = 6;
-// That mean distance for random points of density 1: sum over k of Gamma(k + 1/2) / (Gamma(k) sqrt(pi)) /
-// 6, k = 1 to 6.
-constexpr double poissonSpacing = 0.977;
-// And for points thinned to distance 1 at random. Measured.
-constexpr double evenSites = 1.5;
 // Least distances of vertices in an edge of the quad mesh. With mean edges of the scaffold of .4, .66, 1.2,
 // 1.7 faces the edges of a torus were .08, .15, .40, .80 degrees from the principal directions in a
 // prototype.
 constexpr double trianglesPerFace = 3.0;
+// And in the longest edge that the shape allows, six of which go around a limb: then some nine vertices do. By experiment on rods
+// and a tongue with three points around.
+constexpr double limbDistance = 0.45;
+// Edges of the neck through which the front twists, at most, and triangles behind it, at least. By experiment.
+constexpr Index widestNeck = 4, fewestTwisted = 6;
 // Clearance in noise units: the denoised points beside a crease are round. By experiment on cubes.
 constexpr double noiseClearance = 2.0;
 // Attempts with vertices farther and farther apart, and by how much; and others with a slightly different
@@ -53,47 +51,31 @@ constexpr double shortCrease = 10.0;
 // Of two attempts the one with fewer flaws is taken; a rim or a handle counts as so many defects. Below
 // this number of defects per vertex no other attempt is made. By experiment.
 constexpr Index  rimFlaws         = 5;
+constexpr Index  unusedFlaws      = 3;
 constexpr double toleratedDefects = 0.002;
 
-double spacingOf(const PointSample& sample)
+// Of the vertices, at every point.
+Eigen::VectorXd distancesFor(const SizingField& sizing, const ScaffoldOptions& options)
 {
-	const Index         count = std::min(sample.cloud.size(), spacingProbes);
-	std::vector<double> spacing(count);
-	parallelFor(count, {}, [&](Index i) {
-		const Vector3d p    = sample.cloud.positions.col(i);
-		double         sum  = 0.0;
-		const auto     near = sample.search.nearest(p, spacingNeighbors + 1);
-		for (const Index j : near)
-			sum += (sample.cloud.positions.col(j) - p).norm();
-		spacing[i] = sum / std::max<std::size_t>(near.size() - 1, 1);
-	});
-	return medianInPlace(spacing);
-}
-
-// Distance of the neighbours around every site; `distance` in an evenly sampled cloud, more where it is
-// sparse.
-Eigen::VectorXd localDistances(const Eigen::Matrix3Xd& points, double distance)
-{
-	const NeighborSearch search(points);
-	Eigen::VectorXd      result(points.cols());
-	parallelFor(static_cast<Index>(points.cols()), {}, [&](Index i) {
-		const Vector3d p   = points.col(i);
-		double         sum = 0.0;
-		for (const Index j : search.nearest(p, spacingNeighbors + 1))
-			sum += (points.col(j) - p).norm() / spacingNeighbors;
-		result[i] = std::max(distance, sum / evenSites);
-	});
-	return result;
+	const Eigen::VectorXd size = sizing.size();
+	Eigen::VectorXd       distance(size.size());
+	for (Eigen::Index i = 0; i < size.size(); ++i) {
+		const double spacing = sizing.spacing[i];
+		const double least   = std::clamp(
+            limbDistance * sizing.feature[i],
+            options.limbThinning * spacing,
+            options.thinning * spacing);
+		distance[i] = std::max(least, size[i] / trianglesPerFace);
+	}
+	return distance;
 }
 
 // Turns every component to the side most of its normals are on.
-void orient(
-	const TriangleMesh&       mesh,
-	const ScaffoldSites&      sites,
-	const std::vector<Index>& component,
-	std::vector<Triangle>&    triangles)
+void orient(const ScaffoldSites& sites, std::vector<Triangle>& triangles)
 {
-	std::vector<double> votes(mesh.vertexCount(), 0.0);
+	const TriangleMesh       mesh(sites.points, triangles);
+	const std::vector<Index> component = mesh.components();
+	std::vector<double>      votes(mesh.vertexCount(), 0.0);
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
 		const Vector3d area = mesh.areaVector(t);
 		for (const Index v : triangles[t])
@@ -117,12 +99,11 @@ void fillRim(const std::vector<Index>& rim, ScaffoldSites& sites, std::vector<Tr
 	Vector3d center = Vector3d::Zero();
 	for (const Index v : rim)
 		center += sites.points.col(v) / n;
-	const Index hub = static_cast<Index>(sites.points.cols());
-	sites.points.conservativeResize(3, hub + 1);
-	sites.normals.conservativeResize(3, hub + 1);
+	const Index hub = sites.size();
+	sites.appendCopies({rim[0]});
 	sites.points.col(hub) = center;
 	sites.normals.col(hub).setZero();
-	sites.source.push_back(-1);
+	sites.source[hub] = -1;
 	for (Index k = 0; k < n; ++k)
 		triangles.push_back({hub, rim[(k + 1) % n], rim[k]});
 }
@@ -161,45 +142,75 @@ compact(const ScaffoldSites& sites, std::vector<Triangle> triangles, std::vector
 std::vector<Triangle>
 separated(const std::vector<Triangle>& front, ScaffoldSites& sites, Scaffold& scaffold)
 {
-	const Index           originals = static_cast<Index>(sites.points.cols());
 	std::vector<Index>    copies;
-	std::vector<Triangle> triangles = manifoldPart(front, originals, copies);
-	scaffold.defects  = static_cast<Index>(front.size() - triangles.size() + copies.size());
-	const Index total = originals + static_cast<Index>(copies.size());
-	sites.points.conservativeResize(3, total);
-	sites.normals.conservativeResize(3, total);
-	sites.source.resize(total);
-	for (std::size_t k = 0; k < copies.size(); ++k) {
-		const Index to        = originals + static_cast<Index>(k);
-		sites.points.col(to)  = sites.points.col(copies[k]);
-		sites.normals.col(to) = sites.normals.col(copies[k]);
-		sites.source[to]      = sites.source[copies[k]];
-	}
+	std::vector<Triangle> triangles = manifoldPart(front, sites.size(), copies);
+	scaffold.defects += static_cast<Index>(front.size() - triangles.size() + copies.size());
+	sites.appendCopies(copies);
 	return triangles;
+}
+
+// Where limbs are so thin that a single triangle joins two parts the front may twist: a part of the surface behind such a
+// neck, against whose normals its triangles run, is turned over; the neck tears.
+void untwist(ScaffoldSites& sites, Scaffold& scaffold, std::vector<Triangle>& triangles)
+{
+	const TriangleMesh mesh(sites.points, triangles);
+	std::vector<char>  against(mesh.triangleCount(), 0);
+	for (Index t = 0; t < mesh.triangleCount(); ++t) {
+		Vector3d sum = Vector3d::Zero();
+		for (const Index v : triangles[t])
+			sum += sites.normals.col(v);
+		against[t] = mesh.areaVector(t).dot(sum) < 0.0;
+	}
+	DisjointSets       sets(mesh.triangleCount());
+	std::vector<Index> neck(mesh.triangleCount(), 0), size(mesh.triangleCount(), 0);
+	for (const TriangleMesh::Edge& edge : mesh.edges())
+		if (!edge.isRim() && against[edge.left] && against[edge.right])
+			sets.join(edge.left, edge.right);
+	for (const TriangleMesh::Edge& edge : mesh.edges())
+		if (!edge.isRim() && against[edge.left] != against[edge.right])
+			++neck[sets.find(against[edge.left] ? edge.left : edge.right)];
+	for (Index t = 0; t < mesh.triangleCount(); ++t)
+		++size[sets.find(t)];
+	bool any = false;
+	for (Index t = 0; t < mesh.triangleCount(); ++t) {
+		const Index set = sets.find(t);
+		if (!against[t] || neck[set] > widestNeck || size[set] < fewestTwisted)
+			continue;
+		std::swap(triangles[t][1], triangles[t][2]);
+		any = true;
+	}
+	if (any)
+		triangles = separated(triangles, sites, scaffold);
 }
 
 // Drops components that are too small for a mesh, unless there is no larger one.
 void dropSmallComponents(
 	const TriangleMesh&       mesh,
 	const std::vector<Index>& component,
+	const Eigen::VectorXd&    size,
 	const ScaffoldOptions&    options,
+	const ScaffoldSites&      sites,
 	Scaffold&                 scaffold,
 	std::vector<Triangle>&    triangles)
 {
+	// In least areas. A small component whose rim is filled as a hole would become a closed surface of two sheets. The
+	// least area is so large that its rim is longer than a small hole.
 	std::vector<double> area(mesh.vertexCount(), 0.0);
-	for (Index t = 0; t < mesh.triangleCount(); ++t)
-		area[component[triangles[t][0]]] += mesh.areaVector(t).norm();
-	// A small component whose rim is filled as a hole would become a closed surface of two sheets. The least
-	// area is so large that its rim is longer than a small hole.
-	const double least = std::max(
-		options.leastArea * scaffold.cell * scaffold.cell,
-		options.smallHole * scaffold.spacing * scaffold.spacing);
+	for (Index t = 0; t < mesh.triangleCount(); ++t) {
+		const double third = mesh.areaVector(t).norm() / 3.0;
+		for (const Index v : triangles[t]) {
+			const double faces = size.size() > 0 ? std::pow(size[sites.place[v]], 2) : 0.0;
+			area[component[v]] += third / std::max(
+											  options.leastArea * faces,
+											  options.smallHole * std::pow(sites.distance[v], 2));
+		}
+	}
 	const double      largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
 	std::vector<char> dropped(area.size(), 0);
 	for (std::size_t v = 0; v < area.size(); ++v) {
 		if (!(area[v] > 0.0))
 			continue;
-		dropped[v] = area[v] < std::min(least, largest);
+		dropped[v] = area[v] < std::min(1.0, largest);
 		++(dropped[v] ? scaffold.droppedComponents : scaffold.components);
 	}
 	triangles.erase(
@@ -211,6 +222,8 @@ void dropSmallComponents(
 }
 
 void fillRims(
+	const Eigen::VectorXd& spacing,
+	const Eigen::VectorXd& size,
 	const ScaffoldOptions& options,
 	ScaffoldSites&         sites,
 	Scaffold&              scaffold,
@@ -219,8 +232,16 @@ void fillRims(
 	const TriangleMesh open(sites.points, triangles);
 	for (const std::vector<Index>& rim : open.rims()) {
 		const double length = lengthOf(rim, sites.points);
-		const bool   hole   = length <= options.smallHole * scaffold.spacing;
-		if (!hole && length > options.closedRim * scaffold.cell)
+		double       small = 0.0, edge = 0.0; // means along the rim
+		for (const Index v : rim) {
+			small += std::max(
+						 options.smallHole * sites.around[v],
+						 options.smallGap * spacing[sites.place[v]]) /
+			         double(rim.size());
+			edge += size.size() > 0 ? size[sites.place[v]] / double(rim.size()) : 0.0;
+		}
+		const bool hole = length <= small;
+		if (!hole && length > options.closedRim * edge)
 			continue;
 		scaffold.filledHoles += hole;
 		fillRim(rim, sites, triangles);
@@ -228,15 +249,33 @@ void fillRims(
 	scaffold.defects += scaffold.filledHoles;
 }
 
-// The mesh with the sources of its vertices and its creases.
-void finish(const ScaffoldSites& sites, std::vector<Triangle> triangles, Scaffold& scaffold)
+// The mesh with the sources of its vertices, their sizes, and its creases.
+void finish(
+	const ScaffoldSites&      sites,
+	const std::vector<Index>& order,
+	const Eigen::VectorXd&    size,
+	std::vector<Triangle>     triangles,
+	Scaffold&                 scaffold)
 {
 	std::vector<Index> nameOf;
-	scaffold.mesh = compact(sites, std::move(triangles), nameOf);
-	scaffold.source.resize(scaffold.mesh.vertexCount());
-	for (std::size_t v = 0; v < nameOf.size(); ++v)
-		if (nameOf[v] >= 0)
-			scaffold.source[nameOf[v]] = sites.source[v];
+	scaffold.mesh       = compact(sites, std::move(triangles), nameOf);
+	const Index count   = scaffold.mesh.vertexCount();
+	const bool  isSized = size.size() > 0;
+	scaffold.source.resize(count);
+	scaffold.place.resize(count);
+	scaffold.spacing.resize(count);
+	scaffold.size.resize(isSized ? count : 0);
+	for (std::size_t v = 0; v < nameOf.size(); ++v) {
+		const Index name = nameOf[v];
+		if (name < 0)
+			continue;
+		scaffold.source[name]  = sites.source[v];
+		scaffold.place[name]   = order[sites.place[v]];
+		scaffold.spacing[name] = sites.distance[v];
+		if (isSized)
+			scaffold.size[name] = size[sites.place[v]];
+	}
+	scaffold.unusedSites = sites.size() - count;
 	scaffold.creaseEdge.assign(scaffold.mesh.edgeCount(), 0);
 	for (const auto& [a, b] : sites.creaseEdges) {
 		const bool  used = nameOf[a] >= 0 && nameOf[b] >= 0;
@@ -248,23 +287,27 @@ void finish(const ScaffoldSites& sites, std::vector<Triangle> triangles, Scaffol
 	}
 }
 
-Scaffold
-triangulatedSites(ScaffoldSites sites, double distance, double cell, const ScaffoldOptions& options)
+// `order`: points of the cloud at the places of the sample; `spacing`: of the cloud there, `size`: of the quad mesh; empty: any.
+Scaffold triangulatedSites(
+	ScaffoldSites             sites,
+	const std::vector<Index>& order,
+	const Eigen::VectorXd&    spacing,
+	const Eigen::VectorXd&    size,
+	const ScaffoldOptions&    options)
 {
-	Scaffold scaffold;
-	scaffold.spacing = distance;
-	scaffold.cell    = cell;
-
-	const std::vector<Triangle> front = advancingFront(
-		sites.points, sites.normals, options.longestEdge * localDistances(sites.points, distance));
-	std::vector<Triangle>    triangles = separated(front, sites, scaffold);
+	Scaffold              scaffold;
+	const Eigen::VectorXd longest =
+		(options.longestEdge * sites.around).cwiseMax(options.longestGap * spacing(sites.place));
+	const std::vector<Triangle> front     = advancingFront(sites.points, sites.normals, longest);
+	std::vector<Triangle>       triangles = separated(front, sites, scaffold);
+	orient(sites, triangles);
+	untwist(sites, scaffold, triangles);
 	const TriangleMesh       raw(sites.points, triangles);
 	const std::vector<Index> component = raw.components();
-	orient(raw, sites, component, triangles);
-	dropSmallComponents(raw, component, options, scaffold, triangles);
-	fillRims(options, sites, scaffold, triangles);
+	dropSmallComponents(raw, component, size, options, sites, scaffold, triangles);
+	fillRims(spacing, size, options, sites, scaffold, triangles);
 	recoverCreaseEdges(sites.points, sites.creaseEdges, triangles);
-	finish(sites, std::move(triangles), scaffold);
+	finish(sites, order, size, std::move(triangles), scaffold);
 	return scaffold;
 }
 
@@ -280,8 +323,9 @@ Index topologicalFeatures(const Scaffold& scaffold)
 // Per vertex: a coarse attempt has fewer of everything.
 double flawsOf(const Scaffold& scaffold)
 {
-	const Index flaws =
-		scaffold.defects + scaffold.lostCreaseEdges + rimFlaws * topologicalFeatures(scaffold);
+	const Index flaws = scaffold.defects + scaffold.lostCreaseEdges +
+	                    unusedFlaws * scaffold.unusedSites +
+	                    rimFlaws * topologicalFeatures(scaffold);
 	return double(flaws) / std::max<Index>(1, scaffold.mesh.vertexCount());
 }
 
@@ -302,26 +346,28 @@ std::vector<FeatureLine> longerThan(double least, const std::vector<FeatureLine>
 struct Attempts {
 	const PointSample&        sample;
 	const std::vector<Index>& order;
-	double                    cell;
-	const ScaffoldOptions&    options;
+	Eigen::VectorXd spacing, distance, size; // of every point of the sample, the first attempt's
+	const ScaffoldOptions& options;
 
-	Scaffold at(double distance, const std::vector<FeatureLine>& creases) const
+	// With vertices so many times as far apart.
+	Scaffold at(double factor, const std::vector<FeatureLine>& creases) const
 	{
-		const double clearance =
-			std::max(options.creaseClearance * distance, noiseClearance * options.noise);
+		const Eigen::VectorXd wanted = factor * distance;
+		const Eigen::VectorXd clearance =
+			(options.creaseClearance * wanted).cwiseMax(noiseClearance * options.noise);
 		return triangulatedSites(
-			chooseSites(sample, order, creases, distance, clearance), distance, cell, options);
+			chooseSites(sample, order, creases, wanted, clearance), order, spacing, size, options);
 	}
 
-	// From `distance` on coarser and coarser, until there are few defects: the one with the fewest flaws.
+	// Coarser and coarser, until there are few defects: the one with the fewest flaws.
 	Scaffold coarserFrom(
-		double distance, const std::vector<FeatureLine>& creases, const Progress& progress) const
+		double factor, const std::vector<FeatureLine>& creases, const Progress& progress) const
 	{
 		Scaffold best;
 		double   fewest = 0.0;
-		for (int k = 0; k < attempts; ++k, distance *= coarser) {
+		for (int k = 0; k < attempts; ++k, factor *= coarser) {
 			progress.report(double(k) / attempts);
-			Scaffold     next  = at(distance, creases);
+			Scaffold     next  = at(factor, creases);
 			const double flaws = flawsOf(next);
 			if (k == 0 || (next.mesh.triangleCount() > 0 && flaws < fewest)) {
 				best   = std::move(next);
@@ -344,6 +390,7 @@ bool Scaffold::hasCreases() const
 Scaffold buildScaffold(
 	const CloudIndex&               index,
 	const std::vector<FeatureLine>& creases,
+	const SizingField&              sizing,
 	const ScaffoldOptions&          options,
 	const Progress&                 progress)
 {
@@ -351,26 +398,28 @@ Scaffold buildScaffold(
 		return {};
 	const std::vector<Index>& order = index.shuffled();
 	const PointSample         sample(columnsOf(index.cloud(), order), index.shuffledSearch());
-	const double              spacing = spacingOf(sample);
-	const double              cell =
-        options.targetVertices > 0.0
-						 ? spacing / poissonSpacing * std::sqrt(index.size() / options.targetVertices)
-						 : 0.0;
-
-	const double   distance = std::max(options.thinning * spacing, cell / trianglesPerFace);
-	const Attempts tries{sample, order, cell, options};
-	Scaffold best = tries.coarserFrom(distance, creases, progress.sub(0.0, 0.4, "Triangulating"));
+	Attempts                  tries{sample, order, {}, {}, {}, options};
+	if (sizing.feature.size() > 0) {
+		tries.spacing  = sizing.spacing(order);
+		tries.size     = sizing.size()(order);
+		tries.distance = distancesFor(sizing, options)(order);
+	}
+	else {
+		tries.spacing.setConstant(index.size(), index.minimum().medianSpacing);
+		tries.distance = options.thinning * tries.spacing;
+	}
+	Scaffold best = tries.coarserFrom(1.0, creases, progress.sub(0.0, 0.4, "Triangulating"));
 	// Whether the front crosses a crease is a matter of chance: other points, another try.
 	for (int k = 1; k <= otherTries && best.lostCreaseEdges > 0; ++k) {
 		progress.report(0.4 + 0.2 * k / otherTries);
-		Scaffold next = tries.at((1.0 + k * otherDistance) * distance, creases);
+		Scaffold next = tries.at(1.0 + k * otherDistance, creases);
 		if (flawsOf(next) < flawsOf(best))
 			best = std::move(next);
 	}
 	// False creases, as between wrinkles, can spoil the front: those that are shorter, then all, are left out.
 	std::vector<FeatureLine> kept = creases;
 	double                   done = 0.6;
-	for (const double least : {shortCrease * distance, double(INFINITY)}) {
+	for (const double least : {shortCrease * tries.distance.mean(), double(INFINITY)}) {
 		if (kept.empty() || topologicalFeatures(best) == 0)
 			break;
 		const std::size_t before = kept.size();
@@ -379,7 +428,7 @@ Scaffold buildScaffold(
 		done += 0.2;
 		if (kept.size() == before)
 			continue;
-		Scaffold next = tries.coarserFrom(distance, kept, part);
+		Scaffold next = tries.coarserFrom(1.0, kept, part);
 		if (topologicalFeatures(next) < topologicalFeatures(best))
 			best = std::move(next);
 	}

@@ -12,20 +12,20 @@
 #include "point_cloud.h"
 #include "progress.h"
 #include "scaffold_sites.h"
+#include "sizing_field.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
 
 struct ScaffoldOptions {
-	// of the quad mesh: triangles get about half as large as its faces; 0: any
-	double targetVertices = 0.0;
-	// Least distance of vertices, in spacings of the cloud: with 1.2 the front had the right topology on 62
-	// of 62 noisy clouds of a prototype, with .7 on 60.
-	double thinning = 1.2;
-	// In least distances of vertices. Without a bound on edges the front closes open surfaces (helicoids in
-	// 28 of 30 clouds).
-	double longestEdge     = 5.0;
-	double smallHole       = 10.0; // rims this short are filled; by experiment
+	// Least distance of vertices, in spacings of the cloud around (MinimumNeighborhoods::spacing): with .95 the front had the
+	// right topology on 62 of 62 noisy clouds of a prototype, with .55 on 60. On limbs less, so that enough lie around.
+	double thinning = 0.95, limbThinning = 0.3;
+	// In distances of the vertices around, and in spacings of the cloud: the longer. Without a bound on edges the front
+	// closes open surfaces (helicoids in 28 of 30 clouds).
+	double longestEdge = 5.0, longestGap = 8.0;
+	// Rims this short are filled, in distances of the vertices around, and in spacings of the cloud; by experiment.
+	double smallHole = 10.0, smallGap = 12.0;
 	double creaseClearance = 0.75; // cloud points so near a crease are left out
 	double closedRim = 0.0; // rims up to this length are closed as well, in edges of the quad mesh
 	double leastArea =
@@ -35,22 +35,26 @@ struct ScaffoldOptions {
 
 struct Scaffold {
 	TriangleMesh       mesh;
-	std::vector<Index> source;        // of every vertex: its point of the cloud; -1: there is none
-	std::vector<char>  creaseEdge;    // of every edge
-	double             spacing = 0.0; // of the vertices, a length
-	double             cell = 0.0; // edge of a face of the quad mesh, a length; 0 without a target
+	std::vector<Index> source;     // of every vertex: its point of the cloud; -1: there is none
+	std::vector<Index> place;      // of every vertex: the point of the cloud that is nearest
+	std::vector<char>  creaseEdge; // of every edge
+	Eigen::VectorXd    spacing;    // of every vertex, a length: wanted to its neighbours
+	Eigen::VectorXd    size;       // of every vertex, a length: edge of the quad mesh; empty: any
 	Index              components = 0, droppedComponents = 0;
 	Index filledHoles = 0, defects = 0; // places where the front did not close by itself
 	Index lostCreaseEdges = 0;
+	Index unusedSites = 0; // points that were to be vertices and are in no triangle that was kept
 
 	bool hasCreases() const;
 };
 
 // Vertices are points of the cloud, then samples of the creases and centres of filled holes. The
-// orientation is that of the normals. Same result for any order of the points.
+// orientation is that of the normals. `sizing`: of the quad mesh, whose faces are about twice as large as the triangles;
+// none: any. Same result for any order of the points.
 Scaffold buildScaffold(
 	const CloudIndex&               index,
 	const std::vector<FeatureLine>& creases  = {},
+	const SizingField&              sizing   = {},
 	const ScaffoldOptions&          options  = {},
 	const Progress&                 progress = {});
 

@@ -16,6 +16,7 @@
 #include "point_cloud.h"
 #include "point_subsets.h"
 #include "polygon_mesh.h"
+#include "progress.h"
 
 namespace curvature_lines {
 
@@ -26,6 +27,9 @@ using Eigen::Vector3d;
 // Distance of crease samples over the clearance: further apart, the front crosses between them; nearer, it
 // cuts off the corners where creases meet. By experiment on cubes (.7 over .75).
 constexpr double creaseStep = 0.93;
+// Mean distance to so many neighbours of points thinned to distance 1 at random. Measured.
+constexpr Index  neighborsAround = 6;
+constexpr double evenSites       = 1.5;
 
 // Creases as vertices and the edges between them.
 struct CreaseSamples {
@@ -33,7 +37,9 @@ struct CreaseSamples {
 	std::vector<std::pair<Index, Index>> edges;
 };
 
-CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step)
+// `stepAt`: wanted between samples, of a position.
+template<class Step>
+CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, const Step& stepAt)
 {
 	CreaseSamples                          samples;
 	std::map<std::array<double, 3>, Index> ends; // lines that meet share the vertex
@@ -53,11 +59,13 @@ CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step
 			corners.push_back(corners.front());
 		if (corners.size() < 2)
 			continue;
-		std::vector<double> arc = {0.0};
-		for (std::size_t k = 1; k < corners.size(); ++k)
-			arc.push_back(arc.back() + (corners[k] - corners[k - 1]).norm());
+		std::vector<double> arc = {0.0}; // in steps
+		for (std::size_t k = 1; k < corners.size(); ++k) {
+			const Vector3d middle = 0.5 * (corners[k] + corners[k - 1]);
+			arc.push_back(arc.back() + (corners[k] - corners[k - 1]).norm() / stepAt(middle));
+		}
 		const Index least  = crease.closed ? 3 : 1;
-		const Index pieces = std::max(least, static_cast<Index>(std::ceil(arc.back() / step)));
+		const Index pieces = std::max(least, static_cast<Index>(std::ceil(arc.back())));
 		Index       last   = endVertex(corners.front());
 		for (Index k = 1; k <= pieces; ++k) {
 			Index next = -1;
@@ -80,19 +88,74 @@ CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, double step
 	return samples;
 }
 
+// Points no two of which are nearer than the mean of their distances, taken in order.
+std::vector<Index> thinned(const PointSample& sample, const Eigen::VectorXd& distance)
+{
+	// A point twice as far from its neighbours is hardly ever among them: the sizes are graded.
+	constexpr double   reach = 1.5;
+	const Index        n     = sample.cloud.size();
+	std::vector<char>  covered(n, 0);
+	std::vector<Index> kept, found;
+	for (Index i = 0; i < n; ++i) {
+		if (covered[i])
+			continue;
+		kept.push_back(i);
+		const Vector3d p = sample.cloud.positions.col(i);
+		sample.search.within(p, reach * distance[i], found);
+		for (const Index j : found)
+			if ((sample.cloud.positions.col(j) - p).norm() < 0.5 * (distance[i] + distance[j]))
+				covered[j] = 1;
+	}
+	return kept;
+}
+
+Eigen::VectorXd distancesAround(const ScaffoldSites& sites)
+{
+	const NeighborSearch search(sites.points);
+	Eigen::VectorXd      around(sites.size());
+	parallelFor(sites.size(), {}, [&](Index i) {
+		const Vector3d p   = sites.points.col(i);
+		double         sum = 0.0;
+		for (const Index j : search.nearest(p, neighborsAround + 1))
+			sum += (sites.points.col(j) - p).norm() / neighborsAround;
+		around[i] = std::max(sites.distance[i], sum / evenSites);
+	});
+	return around;
+}
+
 } // namespace
+
+void ScaffoldSites::appendCopies(const std::vector<Index>& which)
+{
+	const Index before = size(), total = before + static_cast<Index>(which.size());
+	points.conservativeResize(3, total);
+	normals.conservativeResize(3, total);
+	distance.conservativeResize(total);
+	around.conservativeResize(total);
+	for (Index k = before; k < total; ++k) {
+		const Index from = which[k - before];
+		points.col(k)    = points.col(from);
+		normals.col(k)   = normals.col(from);
+		distance[k]      = distance[from];
+		around[k]        = around[from];
+		source.push_back(source[from]);
+		place.push_back(place[from]);
+	}
+}
 
 ScaffoldSites chooseSites(
 	const PointSample&              sample,
 	const std::vector<Index>&       order,
 	const std::vector<FeatureLine>& creases,
-	double                          distance,
-	double                          clearance)
+	const Eigen::VectorXd&          distance,
+	const Eigen::VectorXd&          clearance)
 {
-	const CreaseSamples    samples   = sampleCreases(creases, creaseStep * clearance);
+	const auto          nearest = [&](const Vector3d& p) { return sample.search.nearest(p, 1)[0]; };
+	const CreaseSamples samples = sampleCreases(
+		creases, [&](const Vector3d& p) { return creaseStep * clearance[nearest(p)]; });
 	const Eigen::Matrix3Xd onCreases = asColumns(samples.points);
 
-	std::vector<Index> chosen = thin(sample, distance);
+	std::vector<Index> chosen = thinned(sample, distance);
 	if (onCreases.cols() > 0) {
 		const NeighborSearch search(onCreases);
 		chosen.erase(
@@ -100,7 +163,7 @@ ScaffoldSites chooseSites(
 				chosen.begin(),
 				chosen.end(),
 				[&](Index i) {
-					return search.anyWithin(sample.cloud.positions.col(i), clearance);
+					return search.anyWithin(sample.cloud.positions.col(i), clearance[i]);
 				}),
 			chosen.end());
 	}
@@ -110,12 +173,19 @@ ScaffoldSites chooseSites(
 	sites.points.resize(3, count);
 	sites.normals.setZero(3, count);
 	sites.source.assign(count, -1);
+	sites.distance.resize(count);
+	sites.place = chosen;
 	for (Index k = 0; k < fromCloud; ++k) {
 		sites.points.col(k)  = sample.cloud.positions.col(chosen[k]);
 		sites.normals.col(k) = sample.cloud.normals.col(chosen[k]);
 		sites.source[k]      = order[chosen[k]];
 	}
 	sites.points.rightCols(onCreases.cols()) = onCreases;
+	for (Index k = fromCloud; k < count; ++k)
+		sites.place.push_back(nearest(sites.points.col(k)));
+	for (Index k = 0; k < count; ++k)
+		sites.distance[k] = distance[sites.place[k]];
+	sites.around = distancesAround(sites);
 	sites.creaseEdges.reserve(samples.edges.size());
 	for (const auto& [a, b] : samples.edges)
 		sites.creaseEdges.emplace_back(fromCloud + a, fromCloud + b);

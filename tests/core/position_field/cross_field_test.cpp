@@ -264,8 +264,8 @@ Scaffold scaffoldOf(const test::TriangulatedSurface& surface)
 	for (Index v = 0; v < surface.size(); ++v)
 		scaffold.source[v] = v;
 	scaffold.creaseEdge.assign(surface.mesh.edgeCount(), 0);
-	scaffold.spacing = 0.1;
-	scaffold.cell    = 0.2;
+	scaffold.spacing.setConstant(scaffold.mesh.vertexCount(), 0.1);
+	scaffold.size.setConstant(scaffold.mesh.vertexCount(), 0.2);
 	return scaffold;
 }
 

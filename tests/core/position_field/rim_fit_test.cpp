@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "even_sizes.h"
 #include "point_cloud.h"
 #include "rims.h"
 #include "scaffold.h"
@@ -42,9 +43,7 @@ Fitted fitted(const std::string& name, double noise, int seed)
 					   off = sample.positions.col(i) - sample.footPoints.col(i);
 		cloud.positions.col(i) -= off.dot(n) * n;
 	}
-	ScaffoldOptions options;
-	options.targetVertices = 1000.0;
-	Fitted result{buildScaffold(cloud, {}, options), {}};
+	Fitted result{buildScaffold(cloud, {}, test::evenSizes(cloud, 1000.0)), {}};
 	result.rims      = findRims(result.scaffold.mesh);
 	const auto truth = samples::groundTruth(surface, result.scaffold.mesh.vertices);
 	fitRims(result.rims, cloud, truth.normals, noise * surface.diagonal(), result.scaffold);

@@ -42,6 +42,11 @@ FeatureLine polyline(const std::vector<Vector3d>& corners, bool closed = false)
 	return line;
 }
 
+Eigen::VectorXd constant(Index points, double value)
+{
+	return Eigen::VectorXd::Constant(points, value);
+}
+
 // Names that the points had before they were shuffled: any.
 std::vector<Index> namesOf(Index points)
 {
@@ -63,7 +68,8 @@ TEST(ScaffoldSites, AreEvenAndDense)
 	const PointSample        sample(square(3000));
 	const std::vector<Index> names    = namesOf(3000);
 	const double             distance = 0.06;
-	const ScaffoldSites      sites    = chooseSites(sample, names, {}, distance, 0.01);
+	const ScaffoldSites      sites =
+		chooseSites(sample, names, {}, constant(3000, distance), constant(3000, 0.01));
 	ASSERT_EQ(fromCloud(sites), static_cast<Index>(sites.points.cols()));
 	for (Eigen::Index a = 0; a < sites.points.cols(); ++a)
 		for (Eigen::Index b = 0; b < a; ++b)
@@ -86,7 +92,8 @@ TEST(ScaffoldSites, KeepClearOfCreases)
 	const std::vector<Index> names     = namesOf(4000);
 	const double             clearance = 0.05;
 	const FeatureLine        crease = polyline({{0.1, 0.5, 0.0}, {0.5, 0.5, 0.0}, {0.5, 0.9, 0.0}});
-	const ScaffoldSites      sites  = chooseSites(sample, names, {crease}, 0.04, clearance);
+	const ScaffoldSites      sites =
+		chooseSites(sample, names, {crease}, constant(4000, 0.04), constant(4000, clearance));
 	const Index first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
 	// .8 of length in pieces of .93 clearances at most
 	ASSERT_EQ(static_cast<Index>(sites.creaseEdges.size()), 18);
@@ -117,9 +124,10 @@ TEST(ScaffoldSites, CreasesThatMeetShareASample)
 		star.push_back(
 			polyline({middle, middle + 0.3 * Vector3d(std::cos(angle), std::sin(angle), 0.0)}));
 	}
-	const ScaffoldSites sites = chooseSites(sample, names, star, 0.1, 0.1);
-	const Index         first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
-	const Index         edges = static_cast<Index>(sites.creaseEdges.size());
+	const ScaffoldSites sites =
+		chooseSites(sample, names, star, constant(100, 0.1), constant(100, 0.1));
+	const Index first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
+	const Index edges = static_cast<Index>(sites.creaseEdges.size());
 	EXPECT_EQ(count - first, edges + 1); // a tree
 	Index atMiddle = 0;
 	for (const auto& [a, b] : sites.creaseEdges)
@@ -134,8 +142,9 @@ TEST(ScaffoldSites, ClosedCreasesAreLoops)
 	const std::vector<Index> names = namesOf(100);
 	const double             h     = 0.01; // shorter than one step
 	for (const double size : {h, 0.6}) {
-		const FeatureLine   loop  = polyline({{0, 0, 1}, {size, 0, 1}, {0, size, 1}}, true);
-		const ScaffoldSites sites = chooseSites(sample, names, {loop}, 0.1, 0.1);
+		const FeatureLine   loop = polyline({{0, 0, 1}, {size, 0, 1}, {0, size, 1}}, true);
+		const ScaffoldSites sites =
+			chooseSites(sample, names, {loop}, constant(100, 0.1), constant(100, 0.1));
 		const Index first = fromCloud(sites), count = static_cast<Index>(sites.points.cols());
 		EXPECT_GE(count - first, 3);
 		ASSERT_EQ(count - first, static_cast<Index>(sites.creaseEdges.size()));
@@ -148,7 +157,12 @@ TEST(ScaffoldSites, ClosedCreasesAreLoops)
 			EXPECT_EQ(ends.count(a), 2u);
 	}
 	// A line of one point is none.
-	EXPECT_TRUE(chooseSites(sample, names, {polyline({{0, 0, 1}, {0, 0, 1}})}, 0.1, 0.1)
+	EXPECT_TRUE(chooseSites(
+					sample,
+					names,
+					{polyline({{0, 0, 1}, {0, 0, 1}})},
+					constant(100, 0.1),
+					constant(100, 0.1))
 	                .creaseEdges.empty());
 }
 

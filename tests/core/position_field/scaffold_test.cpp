@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "even_sizes.h"
 #include "point_cloud.h"
 #include "scaffold.h"
 #include "scaffold_sites.h"
@@ -68,13 +69,13 @@ TEST(Scaffold, TrianglesLookOutward)
 
 TEST(Scaffold, IsAsCoarseAsItsQuadMeshAllows)
 {
-	const PointCloud cloud = cloudOf(request("sphere", 8000));
-	ScaffoldOptions  options;
-	options.targetVertices  = 200;
-	const Scaffold scaffold = buildScaffold(cloud, {}, options);
+	const PointCloud cloud    = cloudOf(request("sphere", 8000));
+	const Scaffold   scaffold = buildScaffold(cloud, {}, test::evenSizes(cloud, 200));
 	EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), 2);
 	EXPECT_LT(scaffold.mesh.vertexCount(), 8 * 200);
-	EXPECT_NEAR(scaffold.cell, std::sqrt(4 * EIGEN_PI / 200), 0.1 * scaffold.cell);
+	const double edge = std::sqrt(4 * EIGEN_PI / 200);
+	EXPECT_NEAR(scaffold.size.minCoeff(), edge, 0.15 * edge);
+	EXPECT_NEAR(scaffold.size.maxCoeff(), edge, 0.15 * edge);
 }
 
 TEST(Scaffold, DoesNotDependOnTheOrderOfThePoints)

@@ -42,6 +42,13 @@ std::vector<FeatureLine> withoutThinLimbs(
 			kept.push_back(crease);
 			continue;
 		}
+		// A closed one begins on a limb, so that no part runs through its first vertex.
+		Eigen::Matrix3Xd points = crease.points;
+		if (crease.closed) {
+			const auto first = std::find(thin.begin(), thin.end(), char(1)) - thin.begin();
+			std::rotate(thin.begin(), thin.begin() + first, thin.end());
+			points << crease.points.rightCols(count - first), crease.points.leftCols(first);
+		}
 		for (Index begin = 0; begin < count;) {
 			if (thin[begin]) {
 				++begin;
@@ -50,7 +57,7 @@ std::vector<FeatureLine> withoutThinLimbs(
 			const Index end = static_cast<Index>(
 				std::find(thin.begin() + begin, thin.end(), char(1)) - thin.begin());
 			if (end - begin >= fewest)
-				kept.push_back({crease.points.middleCols(begin, end - begin), false});
+				kept.push_back({points.middleCols(begin, end - begin), false});
 			begin = end;
 		}
 	}

@@ -99,7 +99,9 @@ Index refineBends(Scaffold& scaffold)
 		Eigen::Matrix3Xd points(3, total);
 		points.leftCols(count) = coarse.vertices;
 		scaffold.spacing.conservativeResize(total);
-		scaffold.size.conservativeResize(total);
+		const bool isSized = scaffold.size.size() > 0;
+		if (isSized)
+			scaffold.size.conservativeResize(total);
 		for (Index v = count; v < total; ++v) {
 			const TriangleMesh::Edge& edge = coarse.edges()[split[v - count]];
 			points.col(v)                  = curvedMiddle(
@@ -110,7 +112,8 @@ Index refineBends(Scaffold& scaffold)
 			scaffold.source.push_back(-1);
 			scaffold.place.push_back(scaffold.place[edge.from]);
 			scaffold.spacing[v] = scaffold.spacing[edge.from];
-			scaffold.size[v]    = scaffold.size[edge.from];
+			if (isSized)
+				scaffold.size[v] = scaffold.size[edge.from];
 		}
 		std::vector<Triangle> triangles;
 		triangles.reserve(coarse.triangleCount() + 2 * split.size());

@@ -119,7 +119,8 @@ public:
 		result.limb    = m_limb * (m_options.aroundLimb / fullCircle);
 		result.feature = graded(1.0, longest);
 		if (countOf(result.feature, longest) > limit) {
-			double low = 1.0, high = m_options.aroundLimb / m_options.fewestAroundLimb;
+			double low  = 1.0;
+			double high = std::max(1.0, m_options.aroundLimb / m_options.fewestAroundLimb);
 			for (int k = 0; k < coarseningSteps; ++k) {
 				const double middle = 0.5 * (low + high);
 				(countOf(graded(middle, longest), longest) > limit ? low : high) = middle;

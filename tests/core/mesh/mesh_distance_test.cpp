@@ -26,7 +26,7 @@ using Corners = std::array<Vector3d, 3>;
 double distanceToSegment(const Vector3d& p, const Vector3d& a, const Vector3d& b)
 {
 	const double length = (b - a).squaredNorm();
-	const double t = length > 0.0 ? std::clamp((p - a).dot(b - a) / length, 0.0, 1.0) : 0.0;
+	const double t      = length > 0.0 ? std::clamp((p - a).dot(b - a) / length, 0.0, 1.0) : 0.0;
 	return (p - a - t * (b - a)).norm();
 }
 
@@ -51,8 +51,7 @@ double distanceToTriangle(const Vector3d& p, const Corners& t)
 PolygonMesh
 meshOf(const std::vector<Vector3d>& vertices, const std::vector<std::vector<Index>>& faces)
 {
-	return polygonMesh(
-		vertices, std::vector<Vector3d>(vertices.size(), Vector3d::UnitZ()), faces);
+	return polygonMesh(vertices, std::vector<Vector3d>(vertices.size(), Vector3d::UnitZ()), faces);
 }
 
 // Faces of three to six corners anywhere, none of them flat.
@@ -91,8 +90,7 @@ void expectNearest(const PolygonMesh& mesh, const Matrix3Xd& points, double tole
 			if (triangles.face[t] != found.face[i])
 				continue;
 			ofFace = std::min(ofFace, distance);
-			ofFoot =
-				std::min(ofFoot, distanceToTriangle(found.foot.col(i), triangles.corners[t]));
+			ofFoot = std::min(ofFoot, distanceToTriangle(found.foot.col(i), triangles.corners[t]));
 		}
 		EXPECT_NEAR(found.distance[i], least, tolerance);
 		EXPECT_NEAR((found.foot.col(i) - points.col(i)).norm(), found.distance[i], 1e-14);

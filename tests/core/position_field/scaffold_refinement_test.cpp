@@ -187,10 +187,10 @@ TEST(ScaffoldRefinement, ClosedSurfacesStayClosed)
 // Edges of a tube of four around are creases along one of its four sides; its ends are rims.
 TEST(ScaffoldRefinement, CreasesAndRimsStay)
 {
-	const int                              along    = 12;
-	Scaffold                               scaffold = scaffoldOf(tube(4, along));
-	std::set<std::pair<Index, Index>>      creases;
-	const std::vector<std::vector<Index>>  rims = scaffold.mesh.rims();
+	const int                             along    = 12;
+	Scaffold                              scaffold = scaffoldOf(tube(4, along));
+	std::set<std::pair<Index, Index>>     creases;
+	const std::vector<std::vector<Index>> rims = scaffold.mesh.rims();
 	for (int j = 0; j < along; ++j) {
 		creases.emplace(4 * j, 4 * (j + 1));
 		scaffold.creaseEdge[scaffold.mesh.edgeBetween(4 * j, 4 * (j + 1))] = 1;
@@ -212,7 +212,7 @@ TEST(ScaffoldRefinement, CreasesAndRimsStay)
 
 TEST(ScaffoldRefinement, MovesAndGrowsWithTheSurface)
 {
-	const TriangleMesh mesh = tube(4, 12);
+	const TriangleMesh mesh  = tube(4, 12);
 	TriangleMesh       other = mesh;
 	const RigidMotion  motion;
 	other.vertices = 100.0 * motion.ofPoints(mesh.vertices);

@@ -63,8 +63,7 @@ Shape rod(double radius, double length, int points, std::uint64_t seed = 1)
 		if (k == 0)
 			profile.emplace_back(radius, -0.5 * length);
 		profile.emplace_back(
-			radius * std::cos(angle),
-			radius * std::sin(angle) + (k < 0 ? -0.5 : 0.5) * length);
+			radius * std::cos(angle), radius * std::sin(angle) + (k < 0 ? -0.5 : 0.5) * length);
 	}
 	PointCloud cloud;
 	cloud.positions = sampledRevolution(profile, points, seed);
@@ -210,7 +209,7 @@ TEST(SizingField, MoreEdgesAroundForTheAsking)
 	SizingOptions options = optionsFor(80, true);
 	options.aroundLimb    = 9.0;
 	// It is no wish: with two times the target features give way.
-	options.targetVertices = 400;
+	options.targetVertices   = 400;
 	const SizingField sizing = sizesOf(shape, options);
 	const auto        size   = valuesWhere(sizing.size(), onShaft(shape, 0.9));
 	EXPECT_NEAR(size[size.size() / 2], 2 * EIGEN_PI * radius / 9, 0.02 * radius);
@@ -248,14 +247,14 @@ TEST(SizingField, APlateIsNoLimb)
 // On a limb of another shape, away from which nothing is asked for.
 TEST(SizingField, OnlyTheLimbOfAShapeIsFine)
 {
-	const double        radius = 0.05;
-	const Shape         shape  = together(rod(radius, 2.0, 5000), sampled("sphere", 8000), {3, 0, 0});
+	const double radius = 0.05;
+	const Shape  shape  = together(rod(radius, 2.0, 5000), sampled("sphere", 8000), {3, 0, 0});
 	const SizingOptions options = optionsFor(700);
 	const SizingField   sizing  = sizesOf(shape, options);
 	for (Index i = 5000; i < shape.size(); ++i)
 		ASSERT_EQ(sizing.feature[i], INFINITY);
 	const auto onRod = valuesWhere(sizing.feature.head(5000), std::vector<char>(5000, 1));
-	EXPECT_LT(onRod[4950], 1.15 * radius);
+	EXPECT_LT(onRod[4950], 1.2 * radius);
 	EXPECT_LT(onRod[4999], 1.5 * radius);
 	// The body pays for it.
 	EXPECT_GT(sizing.body, std::sqrt(4.0 * EIGEN_PI / 700));
@@ -303,7 +302,7 @@ TEST(SizingField, SmallPartsGetTheirFaces)
 	EXPECT_EQ(sizing.feature.head(8000).minCoeff(), INFINITY);
 	// Specks ask for nothing; twelve points are a part.
 	for (const int points : {11, 12}) {
-		const Shape       speck  = together(large, scaled(sampled("plane", points), 0.01), {3, 0, 0});
+		const Shape speck = together(large, scaled(sampled("plane", points), 0.01), {3, 0, 0});
 		const SizingField specks = sizesOf(speck, options);
 		EXPECT_EQ(specks.feature.tail(points).minCoeff() < INFINITY, points == 12);
 	}
@@ -329,18 +328,23 @@ TEST(SizingField, TheBodyMeetsTheTarget)
 // Two rods and hardly any vertices: as many as four edges around need.
 TEST(SizingField, FeaturesGiveWayDownToFourEdgesAround)
 {
-	const double        radius  = 0.05;
-	const Shape         shape   = together(rod(radius, 4.0, 6000), rod(radius, 4.0, 6000, 2), {3, 0, 0});
+	const double radius = 0.05;
+	const Shape  shape  = together(rod(radius, 4.0, 6000), rod(radius, 4.0, 6000, 2), {3, 0, 0});
 	const SizingOptions options = optionsFor(40);
 	const SizingField   sizing  = sizesOf(shape, options);
 	EXPECT_GT(sizing.expected, 1.5 * options.targetVertices);
 	const auto size = valuesWhere(sizing.size(), onShaft(shape, 1.8));
 	EXPECT_NEAR(size[size.size() / 2], 2 * EIGEN_PI * radius / 4, 0.05 * radius);
 	expectGraded(shape, sizing, options);
+	// A target that nobody asked for may double.
+	const SizingField own = sizesOf(shape, optionsFor(300, true));
+	EXPECT_NEAR(own.expected, 600, 30);
+	EXPECT_GT(own.feature.minCoeff(), 1.05 * 2 * EIGEN_PI * radius / 6);
 	// More vertices, more edges around; from six on the features have what they want.
 	double before = size[size.size() / 2];
 	for (const double target : {400.0, 700.0, 1000.0}) {
-		const auto next = valuesWhere(sizesOf(shape, optionsFor(target)).size(), onShaft(shape, 1.8));
+		const auto next =
+			valuesWhere(sizesOf(shape, optionsFor(target)).size(), onShaft(shape, 1.8));
 		EXPECT_LE(next[next.size() / 2], before + 1e-9);
 		before = next[next.size() / 2];
 	}
@@ -368,15 +372,15 @@ TEST(SizingField, MovesWithTheSurface)
 	Shape             moved = shape;
 	moved.cloud.positions   = motion.ofPoints(shape.cloud.positions);
 	moved.cloud.normals     = motion.ofVectors(shape.cloud.normals);
-	const VectorXd a = sizesOf(shape, optionsFor(600)).size(),
-				   b = sizesOf(moved, optionsFor(600)).size();
-	const auto differing = ((a - b).array().abs() > 0.05 * a.array()).count();
+	const VectorXd a        = sizesOf(shape, optionsFor(600)).size(),
+				   b        = sizesOf(moved, optionsFor(600)).size();
+	const auto differing    = ((a - b).array().abs() > 0.05 * a.array()).count();
 	EXPECT_LT(double(differing), 0.02 * shape.size());
 }
 
 TEST(SizingField, DoesNotDependOnTheOrderOfThePoints)
 {
-	const Shape shape = together(rod(0.05, 2.0, 3000), sampled("sphere", 4000), {1.5, 0, 0});
+	const Shape        shape = together(rod(0.05, 2.0, 3000), sampled("sphere", 4000), {1.5, 0, 0});
 	std::vector<Index> order(shape.size());
 	std::iota(order.begin(), order.end(), 0);
 	samples::Random random(9, 0);

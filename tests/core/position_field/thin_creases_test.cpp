@@ -84,8 +84,8 @@ double thinToTheRight(const Vector3d& p)
 TEST(ThinCreases, WhereThereIsNoLimbAllStay)
 {
 	const Plate plate(noLimb);
-	const auto  kept =
-		withoutThinLimbs({segment(-0.9, 0.9), circle(), segment(0, 0.1, 2)}, plate.index, plate.sizing);
+	const auto  kept = withoutThinLimbs(
+        {segment(-0.9, 0.9), circle(), segment(0, 0.1, 2)}, plate.index, plate.sizing);
 	ASSERT_EQ(kept.size(), 3u); // short ones too
 	EXPECT_EQ(kept[0].points, segment(-0.9, 0.9).points);
 	EXPECT_FALSE(kept[0].closed);

@@ -144,6 +144,34 @@ TEST(FaceCaps, AMeshOfAConeGoesOnToItsTip)
 	}
 }
 
+// The way up a dome is no straight line: rings are on the sphere, not on the chords to its top.
+TEST(FaceCaps, RingsLieOnTheSurface)
+{
+	samples::SampleRequest request;
+	request.surface                       = "sphere";
+	request.points                        = 4000;
+	const ExactCloud                exact = exactCloud(request);
+	std::vector<Vector3d>           vertices;
+	std::vector<std::vector<Index>> faces(1);
+	for (int k = 0; k < 12; ++k) {
+		const double z = k < 6 ? 0.0 : 0.5, angle = EIGEN_PI * k / 3.0;
+		const double radius = std::sqrt(1.0 - z * z);
+		vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+	}
+	for (Index k = 0; k < 6; ++k) {
+		faces[0].push_back(6 + k);
+		faces.push_back({k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k});
+	}
+	PolygonMesh       mesh = polygonMesh(vertices, vertices, faces);
+	std::vector<char> onFeature(12, 0);
+	ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, mesh, onFeature), 1);
+	ASSERT_GT(mesh.vertexCount(), 12);
+	for (Index v = 12; v < mesh.vertexCount(); ++v) {
+		EXPECT_NEAR(mesh.vertices.col(v).norm(), 1.0, 0.005);
+		EXPECT_GT(mesh.vertices.col(v).dot(mesh.normals.col(v)), 0.99);
+	}
+}
+
 // Every face looks outward: away from the axis, or up at the end.
 TEST(FaceCaps, RingsAreNotTwisted)
 {

@@ -97,6 +97,76 @@ TEST(LineDensity, ShrinksAsTheSurfaceGrows)
 	EXPECT_LT((fine - 10.0 * coarse).cwiseAbs().maxCoeff(), 1e-6 * fine.maxCoeff());
 }
 
+// The same torus, with a vertex on one of its edges: one of four triangles is flat.
+TEST(LineDensity, TrianglesWithoutAreaHaveNoSay)
+{
+	const test::TriangulatedSurface torus = test::triangulatedTorus(40, 20);
+	for (const double away : {0.0, 1e-18, 1e-14}) {
+		SCOPED_TRACE(away);
+		// Triangle 0 becomes a flat one of two of its corners and the new vertex, and another that covers it.
+		const auto [a, b, c]            = torus.mesh.triangles()[0];
+		const Index           added     = torus.size();
+		std::vector<Triangle> triangles = torus.mesh.triangles();
+		triangles[0]                    = {a, b, added};
+		triangles.push_back({b, c, added});
+		triangles.push_back({c, a, added});
+		Eigen::Matrix3Xd vertices(3, added + 1);
+		const auto       corner = [&](Index v) { return torus.mesh.vertices.col(v); };
+		vertices << torus.mesh.vertices,
+			0.5 * (corner(a) + corner(b)) + away * (corner(c) - corner(a));
+		const CrossedSurface crossed =
+			test::crossed(test::withTruth("torus", TriangleMesh(vertices, triangles)));
+		LineDensityOptions options;
+		options.targetVertices = 400;
+		const LineDensity density =
+			lineDensity(crossed.scaffold, crossed.field, crossed.curvature, options);
+		ASSERT_TRUE(density.allFinite());
+		EXPECT_NEAR(
+			expectedVertices(crossed.surface.mesh, crossed.field, density), 400, 1e-4 * 400);
+		const TriangleField flat = triangleField(crossed.surface.mesh, crossed.field, density, 0);
+		EXPECT_EQ(flat.gradient, Eigen::Matrix3d::Zero());
+		EXPECT_TRUE(flat.normal.allFinite());
+		// What is around does not notice.
+		const CrossedSurface whole = test::crossed(torus);
+		const LineDensity    without =
+			lineDensity(whole.scaffold, whole.field, whole.curvature, options);
+		EXPECT_LT(
+			(density.leftCols(added) - without).cwiseAbs().maxCoeff(), 0.1 * without.maxCoeff());
+	}
+}
+
+// Lines are as far apart as the sizes of the scaffold.
+TEST(LineDensity, FollowsTheSizesOfTheScaffold)
+{
+	CrossedSurface plane = test::crossed(test::triangulatedPlane(24));
+	for (Index v = 0; v < plane.surface.size(); ++v)
+		plane.scaffold.size[v] = 0.1 * std::exp(0.5 * plane.surface.mesh.vertices(0, v));
+	const Eigen::VectorXd areas = plane.surface.mesh.vertexAreas();
+	LineDensityOptions    options;
+	options.targetVertices    = (areas.array() / plane.scaffold.size.array().square()).sum();
+	options.anisotropy        = 1.0;
+	const LineDensity density = lineDensity(plane.scaffold, plane.field, plane.curvature, options);
+	// The lines along the other direction have to be as far apart everywhere: half-way is what a mesh can do.
+	double fine = 0.0, coarse = 0.0;
+	for (Index v = 0; v < plane.surface.size(); ++v) {
+		const double x = plane.surface.mesh.vertices(0, v);
+		if (x < -0.45)
+			fine = std::max(fine, density.col(v).prod());
+		if (x > 0.45)
+			coarse = std::max(coarse, density.col(v).prod());
+	}
+	EXPECT_GT(fine / coarse, 1.3);
+	// Twice as large, half as dense, wherever the target says no more than that.
+	CrossedSurface large = plane;
+	large.scaffold.size *= 2.0;
+	const LineDensity same = lineDensity(large.scaffold, large.field, large.curvature, options);
+	EXPECT_LT((same - density).cwiseAbs().maxCoeff(), 1e-6 * density.maxCoeff());
+	// No sizes: even.
+	plane.scaffold.size.resize(0);
+	const LineDensity even = lineDensity(plane.scaffold, plane.field, plane.curvature, options);
+	EXPECT_LT(even.maxCoeff() / even.minCoeff(), 1.0 + 1e-6);
+}
+
 TEST(ExpectedRise, IsTheNumberOfLinesAnEdgeCrosses)
 {
 	const CrossedSurface plane = test::crossed(test::triangulatedPlane(10, 0.3));

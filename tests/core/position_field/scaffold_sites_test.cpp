@@ -166,5 +166,119 @@ TEST(ScaffoldSites, ClosedCreasesAreLoops)
 	                .creaseEdges.empty());
 }
 
+// Fine to the left, coarse to the right.
+TEST(ScaffoldSites, FollowADistanceThatChanges)
+{
+	const PointSample sample(square(6000));
+	Eigen::VectorXd   distance(6000);
+	for (Index i = 0; i < 6000; ++i)
+		distance[i] = 0.02 + 0.08 * sample.cloud.positions(0, i);
+	const ScaffoldSites sites =
+		chooseSites(sample, namesOf(6000), {}, distance, constant(6000, 0.01));
+	ASSERT_EQ(sites.distance.size(), sites.points.cols());
+	for (Index a = 0; a < sites.size(); ++a) {
+		EXPECT_EQ(sites.distance[a], 0.02 + 0.08 * sites.points(0, a));
+		EXPECT_EQ(sample.cloud.positions.col(sites.place[a]), sites.points.col(a));
+		for (Index b = 0; b < a; ++b)
+			EXPECT_GE(
+				(sites.points.col(a) - sites.points.col(b)).norm(),
+				0.5 * (sites.distance[a] + sites.distance[b]) - 1e-12);
+	}
+	// Nowhere empty: every point has a site within the mean of both distances.
+	for (Index i = 0; i < 6000; ++i) {
+		const Eigen::VectorXd away =
+			(sites.points.colwise() - sample.cloud.positions.col(i)).colwise().norm();
+		const auto mean = 0.5 * (sites.distance.array() + distance[i]);
+		EXPECT_LE((away.array() - mean).minCoeff(), 0.0);
+	}
+}
+
+// A hundred points on the left half, five thousand on the right: the sites cannot be as near as wanted.
+TEST(ScaffoldSites, KnowHowFarTheirNeighboursAre)
+{
+	PointCloud cloud = square(5100);
+	cloud.positions.row(0) *= 0.5;
+	cloud.positions.row(0).tail(5000).array() += 0.5;
+	const PointSample   sample(cloud);
+	const ScaffoldSites sites =
+		chooseSites(sample, namesOf(5100), {}, constant(5100, 0.02), constant(5100, 0.01));
+	double sparse = 0.0, dense = 0.0, left = 0.0, right = 0.0;
+	for (Index a = 0; a < sites.size(); ++a) {
+		EXPECT_GE(sites.around[a], sites.distance[a]);
+		const double x = sites.points(0, a);
+		if (x < 0.45) {
+			sparse += sites.around[a];
+			left += 1.0;
+		}
+		else if (x > 0.55) {
+			dense += sites.around[a];
+			right += 1.0;
+		}
+	}
+	EXPECT_NEAR(dense / right, 0.02, 0.002);
+	// One point in .005 of area: neighbours are .07 away, distances that lead to such .05.
+	EXPECT_NEAR(sparse / left, 0.055, 0.015);
+}
+
+TEST(ScaffoldSites, CopiesAreKnownAsTheirOriginals)
+{
+	const PointSample sample(square(300));
+	ScaffoldSites     sites = chooseSites(
+        sample,
+        namesOf(300),
+        {polyline({{0.1, 0.5, 0.0}, {0.5, 0.5, 0.0}})},
+        constant(300, 0.1),
+        constant(300, 0.1));
+	const ScaffoldSites      before = sites;
+	const Index              count  = before.size();
+	const std::vector<Index> which  = {3, 0, 3, count - 1};
+	sites.appendCopies(which);
+	sites.appendCopies({});
+	sites.appendCopies({count + 1}); // a copy of a copy
+	std::vector<Index> from(count);
+	std::iota(from.begin(), from.end(), 0);
+	from.insert(from.end(), which.begin(), which.end());
+	from.push_back(0);
+	ASSERT_EQ(sites.size(), static_cast<Index>(from.size()));
+	ASSERT_EQ(sites.normals.cols(), sites.points.cols());
+	ASSERT_EQ(sites.source.size(), from.size());
+	ASSERT_EQ(sites.place.size(), from.size());
+	ASSERT_EQ(sites.distance.size(), sites.points.cols());
+	ASSERT_EQ(sites.around.size(), sites.points.cols());
+	for (std::size_t a = 0; a < from.size(); ++a) {
+		EXPECT_EQ(sites.points.col(a), before.points.col(from[a]));
+		EXPECT_EQ(sites.normals.col(a), before.normals.col(from[a]));
+		EXPECT_EQ(sites.source[a], before.source[from[a]]);
+		EXPECT_EQ(sites.place[a], before.place[from[a]]);
+		EXPECT_EQ(sites.distance[a], before.distance[from[a]]);
+		EXPECT_EQ(sites.around[a], before.around[from[a]]);
+	}
+	EXPECT_EQ(sites.creaseEdges, before.creaseEdges);
+}
+
+// Pieces of creases are as long as the clearance where they are.
+TEST(ScaffoldSites, CreasesAreSampledAsFinelyAsTheirPlaceAsks)
+{
+	const PointSample sample(square(4000));
+	Eigen::VectorXd   clearance(4000);
+	for (Index i = 0; i < 4000; ++i)
+		clearance[i] = sample.cloud.positions(0, i) < 0.5 ? 0.02 : 0.08;
+	std::vector<Vector3d> corners;
+	for (int k = 0; k <= 100; ++k)
+		corners.emplace_back(0.1 + 0.008 * k, 0.5, 0.0);
+	const ScaffoldSites sites =
+		chooseSites(sample, namesOf(4000), {polyline(corners)}, clearance, clearance);
+	for (const auto& [a, b] : sites.creaseEdges) {
+		const double length = (sites.points.col(a) - sites.points.col(b)).norm();
+		const double x      = 0.5 * (sites.points(0, a) + sites.points(0, b));
+		if (x < 0.45) {
+			EXPECT_NEAR(length, 0.93 * 0.02, 0.002);
+		}
+		if (x > 0.58) {
+			EXPECT_NEAR(length, 0.93 * 0.08, 0.008);
+		}
+	}
+}
+
 } // namespace
 } // namespace curvature_lines::test

@@ -13,6 +13,7 @@
 #include <Eigen/LU>
 
 #include "block_size.h"
+#include "cloud_index.h"
 #include "curvature_field.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
@@ -28,6 +29,9 @@ using Eigen::Vector3d;
 
 // docs/method.md, "Projection onto the surface"; values without another reason by experiment (benchmarks/lines.py,
 // "Projections").
+// Points whose normals agree with a place's (dot product) are of its side of the surface; looked for among so many.
+constexpr double sameSide       = 0.2;
+constexpr Index  sideCandidates = 16;
 // The second pass changes what the first leaves by second-order terms only.
 constexpr int mixedPasses   = 2;
 constexpr int optimalPasses = 5; // A09 section 5.1: "4-5 iterations"
@@ -370,6 +374,15 @@ PointCloud onFittedSurface(const PointCloud& cloud, const CurvatureField& field)
 		if (sizes[i] <= most)
 			fitted.positions.col(i) += field.height[i] * cloud.normals.col(i);
 	return fitted;
+}
+
+Index closestOnSide(const CloudIndex& index, const Vector3d& position, const Vector3d& normal)
+{
+	const std::vector<Index> near = index.search().nearest(position, sideCandidates);
+	for (const Index i : near)
+		if (index.cloud().normals.col(i).dot(normal) > sameSide)
+			return i;
+	return near[0];
 }
 
 SurfaceSample projectToSurface(

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "cloud_index.h"
 #include "curvature_field.h"
 #include "point_cloud.h"
 
@@ -37,6 +38,11 @@ constexpr double rimOffset = 0.56; // 1 / sqrt(pi): of a half plane
 // noise are left alone: they are those of stray points and of points next to a crease that took the normal of the other
 // face.
 PointCloud onFittedSurface(const PointCloud& cloud, const CurvatureField& field);
+
+// The nearest point of the cloud whose normal agrees with that of a place, which may be near to another sheet; the nearest of
+// all where none of several agrees.
+Index closestOnSide(
+	const CloudIndex& index, const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
 
 // `closest`: the cloud point nearest to `position` (its Voronoi cell). The support are the points
 // with positive statistical weight there, and itself; opposing normals are left out. Where the

@@ -26,7 +26,7 @@ struct BlendInput {
 	// per point: standard deviation of the positions across the surface (point_deviation.h, or the
 	// caller's), a length
 	std::vector<double> pointDeviation;
-	ScanLines           lines; // at the places of the points
+	ScanLines           lines = {}; // at the places of the points; may be left out: none
 };
 
 // Estimated places and normals of the points, from an earlier pass: they give the frames of patches and the weights by

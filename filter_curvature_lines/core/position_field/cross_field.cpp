@@ -206,7 +206,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 	guide.weights.setZero(n);
 	guide.onCrease.assign(n, 0);
 	const Eigen::VectorXd  areas = mesh.vertexAreas();
-	const Eigen::VectorXd& cell  = scaffold.size.size() > 0 ? scaffold.size : scaffold.spacing;
+	const double cell = (scaffold.size.size() > 0 ? scaffold.size : scaffold.spacing).maxCoeff();
 	for (Index v = 0; v < n; ++v) {
 		const Index i = scaffold.source[v];
 		if (i < 0)
@@ -221,7 +221,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 			continue;
 		const double ratio      = difference / size;
 		const double confidence = std::min(mostTrust, sure / cellErrors);
-		guide.weights[v]        = confidence * ratio * areas[v] / (cell[v] * cell[v]);
+		guide.weights[v]        = confidence * ratio * areas[v] / (cell * cell);
 	}
 
 	for (Index e = 0; e < mesh.edgeCount(); ++e)

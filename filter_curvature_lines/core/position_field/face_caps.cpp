@@ -24,12 +24,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A face bulges when a point is above it by more than this, in its mean edges, and so many points by half of it.
-constexpr double bulge       = 0.35;
-constexpr Index  fewestAbove = 1;
 // The foot of such a point lies inside the face: not so near to its sides, in mean edges, unless the point is this high.
 constexpr double besideSide = 0.05, tall = 0.7;
 constexpr Index  largestFace = 6; // sides
+// Cosine between the way to such a point and the face's normal, at least; and faces nearby that are asked.
+constexpr double facing     = 0.5;
+constexpr Index  facesAsked = 16;
 // The last ring is at one of these shares of the way to the apex: the first that leaves it so near, in mean edges.
 constexpr double lastRings[] = {0.5, 0.65, 0.8, 0.9};
 constexpr double apexLeft    = 0.15;
@@ -37,8 +37,6 @@ constexpr double apexLeft    = 0.15;
 constexpr double ringStep = 1.2;
 // A projection that moves a vertex further, in the height of the apex, has found another part of the surface.
 constexpr double farthestMove = 0.5;
-constexpr double sameSide     = 0.2;
-constexpr Index  closestAsked = 16;
 
 struct FaceShape {
 	Vector3d center = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -61,6 +59,22 @@ FaceShape shapeOf(const PolygonMesh& mesh, Index f)
 	return shape;
 }
 
+std::vector<FaceShape> shapesOf(const PolygonMesh& mesh)
+{
+	std::vector<FaceShape> shapes;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		shapes.push_back(shapeOf(mesh, f));
+	return shapes;
+}
+
+Eigen::Matrix3Xd centersOf(const std::vector<FaceShape>& shapes)
+{
+	Eigen::Matrix3Xd centers(3, shapes.size());
+	for (std::size_t f = 0; f < shapes.size(); ++f)
+		centers.col(f) = shapes[f].center;
+	return centers;
+}
+
 double distanceToSides(const PolygonMesh& mesh, Index f, const Vector3d& p)
 {
 	const NeighborLists::Row face  = mesh.faces[f];
@@ -80,16 +94,19 @@ struct Ring {
 
 class Caps {
 public:
-	Caps(const CloudIndex& index, const CurvatureField& curvature, const PolygonMesh& mesh) :
-			m_index(index), m_curvature(curvature), m_mesh(mesh), m_apex(mesh.faceCount(), -1),
-			m_loops(faceLoopsOf(mesh))
+	Caps(
+		const CloudIndex&     index,
+		const CurvatureField& curvature,
+		double                bulge,
+		const PolygonMesh&    mesh) :
+			m_index(index), m_curvature(curvature), m_bulge(bulge), m_mesh(mesh), m_apex(mesh.faceCount(), -1),
+			m_loops(faceLoopsOf(mesh)), m_shapes(shapesOf(mesh)),
+			m_centerPoints(centersOf(m_shapes)), m_centers(m_centerPoints)
 	{
 		for (Index v = 0; v < mesh.vertexCount(); ++v) {
 			m_vertices.push_back(mesh.vertices.col(v));
 			m_normals.push_back(mesh.normals.col(v));
 		}
-		for (Index f = 0; f < mesh.faceCount(); ++f)
-			m_shapes.push_back(shapeOf(mesh, f));
 		findApexes();
 	}
 
@@ -111,26 +128,45 @@ private:
 	{
 		const Eigen::Matrix3Xd& points = m_index.cloud().positions;
 		const MeshDistance      found  = distanceToMesh(m_mesh, points);
-		const double            least  = bulge;
-		std::vector<Index>      above(m_mesh.faceCount(), 0);
 		for (Index i = 0; i < m_index.size(); ++i) {
-			const Index      f     = found.face[i];
-			const FaceShape& shape = m_shapes[f];
-			const double     share = found.distance[i] / shape.edge;
-			const Vector3d   step  = points.col(i) - found.foot.col(i);
-			if (share < 0.5 * least || m_mesh.faces[f].size() > largestFace ||
-			    step.dot(shape.normal) < 0.5 * found.distance[i])
+			const Index f = faceBelow(i, found);
+			if (f < 0)
 				continue;
-			if (share < tall &&
-			    distanceToSides(m_mesh, f, found.foot.col(i)) < besideSide * shape.edge)
-				continue;
-			++above[f];
-			if (share >= least && (m_apex[f] < 0 || found.distance[i] > found.distance[m_apex[f]]))
+			if (found.distance[i] >= m_bulge * m_shapes[f].edge &&
+			    (m_apex[f] < 0 || found.distance[i] > found.distance[m_apex[f]]))
 				m_apex[f] = i;
 		}
-		for (Index f = 0; f < m_mesh.faceCount(); ++f)
-			if (above[f] < fewestAbove)
-				m_apex[f] = -1;
+	}
+
+	// The face that point i is above; -1: none, or not far.
+	Index faceBelow(Index i, const MeshDistance& found) const
+	{
+		const FaceShape& nearest = m_shapes[found.face[i]];
+		const double     share   = found.distance[i] / nearest.edge;
+		if (share < 0.5 * m_bulge)
+			return -1;
+		const Vector3d p    = m_index.cloud().positions.col(i);
+		const Vector3d foot = found.foot.col(i);
+		Index          f    = found.face[i];
+		if ((p - foot).dot(nearest.normal) < facing * found.distance[i]) {
+			// Beside the end of a limb the nearest face is one of its sides.
+			if (share < tall)
+				return -1;
+			double best = facing;
+			f           = -1;
+			for (const Index other : m_centers.nearest(foot, facesAsked)) {
+				const Vector3d way    = p - m_shapes[other].center;
+				const double   cosine = way.normalized().dot(m_shapes[other].normal);
+				if (cosine > best) {
+					best = cosine;
+					f    = other;
+				}
+			}
+		}
+		else if (share < tall && distanceToSides(m_mesh, f, foot) < besideSide * nearest.edge) {
+			return -1;
+		}
+		return f >= 0 && m_mesh.faces[f].size() <= largestFace ? f : -1;
 	}
 
 	// Between the corners of face f and the apex, on the surface.
@@ -148,17 +184,16 @@ private:
 				p - shape.center - (p - shape.center).dot(axis) / (height * height) * axis;
 			const Vector3d side   = (out.normalized() + 0.5 * axis / height).normalized();
 			Vector3d       normal = side;
-			for (const Index i : m_index.search().nearest(p, closestAsked)) {
-				if (m_index.cloud().normals.col(i).dot(side) < sameSide)
-					continue;
-				const SurfaceSample sample =
-					projectToSurface(m_index.cloud(), m_curvature, p, i, ProjectionKind::Mixed);
-				if ((sample.position - p).norm() < farthestMove * std::max(height, shape.edge) &&
-				    sample.normal.dot(side) > 0.0) {
-					p      = sample.position;
-					normal = sample.normal;
-				}
-				break;
+			const SurfaceSample sample = projectToSurface(
+				m_index.cloud(),
+				m_curvature,
+				p,
+				closestOnSide(m_index, p, side),
+				ProjectionKind::Mixed);
+			if ((sample.position - p).norm() < farthestMove * std::max(height, shape.edge) &&
+			    sample.normal.dot(side) > 0.0) {
+				p      = sample.position;
+				normal = sample.normal;
 			}
 			ring.points.push_back(p);
 			ring.normals.push_back(normal);
@@ -204,11 +239,14 @@ private:
 
 	const CloudIndex&      m_index;
 	const CurvatureField&  m_curvature;
+	double                 m_bulge;
 	const PolygonMesh&     m_mesh;
 	std::vector<Index>     m_apex; // of every face: its highest point; -1: it does not bulge
-	std::vector<FaceShape> m_shapes;
-	std::vector<Vector3d>  m_vertices, m_normals;
 	std::vector<std::vector<Index>> m_loops;
+	std::vector<FaceShape>          m_shapes;
+	Eigen::Matrix3Xd                m_centerPoints;
+	NeighborSearch                  m_centers;
+	std::vector<Vector3d>           m_vertices, m_normals;
 };
 
 } // namespace
@@ -216,12 +254,13 @@ private:
 Index capBulgingFaces(
 	const CloudIndex&     index,
 	const CurvatureField& curvature,
+	double                bulge,
 	PolygonMesh&          mesh,
 	std::vector<char>&    onFeature)
 {
 	if (mesh.faceCount() == 0)
 		return 0;
-	Caps        caps(index, curvature, mesh);
+	Caps        caps(index, curvature, bulge, mesh);
 	const Index count = caps.add();
 	if (count > 0) {
 		mesh = caps.result();

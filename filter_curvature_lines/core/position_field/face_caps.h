@@ -12,11 +12,13 @@
 
 namespace curvature_lines {
 
+// A face bulges when a point of the surface is above it by more than `bulge`, in its mean edges.
 // `index`: the points on the surface. Vertices of the mesh stay; new ones lie on the surface and are marked as not
 // `onFeature`. Keeps V - E + F. Returns how many faces got a cap.
 Index capBulgingFaces(
 	const CloudIndex&     index,
 	const CurvatureField& curvature,
+	double                bulge,
 	PolygonMesh&          mesh,
 	std::vector<char>&    onFeature);
 

@@ -35,6 +35,8 @@ constexpr double stiffness = 1e-3;
 const double mostCorrection = std::log(2.0);
 // Area of a triangle over the square of a side, below which it has none: far above rounding errors.
 constexpr double leastTriangle = 1e-9;
+// On limbs lines get no farther apart than by 15 %.
+const double mostOnLimb = std::log(1.15);
 // Weight of a crease vertex in the mean of a triangle: its cross lies between two faces and is wrong for both.
 constexpr double creaseShare = 1e-3;
 
@@ -226,7 +228,12 @@ LineDensity lineDensity(
 			density(1, v) /= a;
 		}
 	}
-	density.array() *= correction(mesh, field, density, options.evenness).array().exp();
+	LineDensity scales = correction(mesh, field, density, options.evenness);
+	// Lines around a thin limb stay as close as they are wanted: half as many would be none.
+	for (Index v = 0; v < mesh.vertexCount() && !scaffold.onLimb.empty(); ++v)
+		if (scaffold.onLimb[v])
+			scales.col(v) = scales.col(v).cwiseMax(-mostOnLimb);
+	density.array() *= scales.array().exp();
 	// inside g^2 + onRims g = target for the common factor g.
 	const auto [inside, onRims] = countsOf(mesh, field, density);
 	const double half           = 0.5 * onRims / inside;

@@ -34,6 +34,7 @@ struct PositionFieldMeshResult : FinishedMesh {
 	Index       droppedComponents  = 0; // too small for a mesh, or without any line
 	Index       repairedComponents = 0;
 	Index       filledHoles = 0, lostCreaseEdges = 0;
+	Index       unsoundFaces = 0; // not convex, or turned over, as far as untangleFaces() knows
 	Index       caps = 0; // faces that went on to the tip of a part no line crosses
 	LineNetwork lines;    // if keepLines
 };

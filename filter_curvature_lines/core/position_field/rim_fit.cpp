@@ -17,6 +17,7 @@
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "progress.h"
+#include "quantile.h"
 #include "rims.h"
 #include "scaffold.h"
 
@@ -150,6 +151,13 @@ struct Strip {
 	double                density = 0.0;                                    // of points
 };
 
+// Of every vertex; beside a rim, where neighbours are missing, no more than of most.
+Eigen::VectorXd spacingsOf(const Scaffold& scaffold)
+{
+	std::vector<double> all(scaffold.spacing.begin(), scaffold.spacing.end());
+	return scaffold.spacing.cwiseMin(medianInPlace(all));
+}
+
 // The rims of a scaffold with the cloud beside them.
 class RimFit {
 public:
@@ -160,7 +168,7 @@ public:
 		double                  noise,
 		Scaffold&               scaffold) :
 			m_rims(rims), m_cloud(cloud), m_normals(normals), m_noise(noise),
-			m_spacing(scaffold.spacing), m_positions(scaffold.mesh.vertices)
+			m_spacing(spacingsOf(scaffold)), m_positions(scaffold.mesh.vertices)
 	{
 		for (Index r = 0; r < static_cast<Index>(rims.size()); ++r)
 			for (Index k = 0; k < rims[r].size(); ++k)
@@ -377,7 +385,7 @@ private:
 	const PointCloud&               m_cloud;
 	const Eigen::Matrix3Xd&         m_normals;
 	double                          m_noise;
-	const Eigen::VectorXd&          m_spacing; // of every vertex
+	Eigen::VectorXd                 m_spacing; // of every vertex
 	Eigen::Matrix3Xd&               m_positions;
 	std::vector<Place>              m_places;
 	std::vector<std::vector<Index>> m_beside; // of every vertex: points of the cloud

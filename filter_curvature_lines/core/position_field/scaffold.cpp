@@ -36,8 +36,10 @@ constexpr double trianglesPerFace = 3.0;
 // And in the longest edge that the shape allows, six of which go around a limb: then some nine vertices do. By experiment on rods
 // and a tongue with three points around.
 constexpr double limbDistance = 0.45;
-// Edges of the neck through which the front twists, at most, and triangles behind it, at least. By experiment.
-constexpr Index widestNeck = 4, fewestTwisted = 6;
+// Triangles behind the neck through which the front twists, at least; edges of the neck, at most: few, or few for what is
+// behind (times the root of the number of triangles; 2.3 around a disk, such as a patch of normals that point inwards).
+constexpr Index  fewestTwisted = 6, widestNeck = 4;
+constexpr double neckOfRoot    = 0.7;
 // Clearance in noise units: the denoised points beside a crease are round. By experiment on cubes.
 constexpr double noiseClearance = 2.0;
 // Attempts with vertices farther and farther apart, and by how much; and others with a slightly different
@@ -174,7 +176,8 @@ void untwist(ScaffoldSites& sites, Scaffold& scaffold, std::vector<Triangle>& tr
 	bool any = false;
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
 		const Index set = sets.find(t);
-		if (!against[t] || neck[set] > widestNeck || size[set] < fewestTwisted)
+		const double widest = std::max<double>(widestNeck, neckOfRoot * std::sqrt(size[set]));
+		if (!against[t] || neck[set] > widest || size[set] < fewestTwisted)
 			continue;
 		std::swap(triangles[t][1], triangles[t][2]);
 		any = true;
@@ -415,6 +418,15 @@ Scaffold buildScaffold(
 		Scaffold next = tries.at(1.0 + k * otherDistance, creases);
 		if (flawsOf(next) < flawsOf(best))
 			best = std::move(next);
+	}
+	// So are false holes and handles on thin limbs. True rims are in every attempt: a first one that has as many is the last.
+	for (int k = 1; k <= otherTries && topologicalFeatures(best) > 0; ++k) {
+		Scaffold   next   = tries.at(1.0 - k * otherDistance, creases);
+		const bool better = flawsOf(next) < flawsOf(best);
+		if (better)
+			best = std::move(next);
+		else if (k > 1 || topologicalFeatures(next) >= topologicalFeatures(best))
+			break;
 	}
 	// False creases, as between wrinkles, can spoil the front: those that are shorter, then all, are left out.
 	std::vector<FeatureLine> kept = creases;

@@ -111,6 +111,8 @@ Index refineBends(Scaffold& scaffold)
                 normals.col(edge.to));
 			scaffold.source.push_back(-1);
 			scaffold.place.push_back(scaffold.place[edge.from]);
+			if (!scaffold.onLimb.empty())
+				scaffold.onLimb.push_back(scaffold.onLimb[edge.from]);
 			scaffold.spacing[v] = scaffold.spacing[edge.from];
 			if (isSized)
 				scaffold.size[v] = scaffold.size[edge.from];

@@ -52,7 +52,9 @@ constexpr double longestLink       = 3.0;
 constexpr Index  fewestInComponent = 12;
 // Vertices over the target beyond which features get coarser: one that nobody asked for, and one that somebody did.
 constexpr double mostAutomatic = 2.0, mostAsked = 1.02;
-constexpr int    coarseningSteps = 5, bodySteps = 40;
+// So much coarser at most; limbs keep SizingOptions::fewestAroundLimb.
+constexpr double mostCoarsening  = 4.0;
+constexpr int    coarseningSteps = 6, bodySteps = 40;
 
 // Random parts of a cloud, each a quarter of the one before.
 class RandomParts {
@@ -119,8 +121,7 @@ public:
 		result.limb    = m_limb * (m_options.aroundLimb / fullCircle);
 		result.feature = graded(1.0, longest);
 		if (countOf(result.feature, longest) > limit) {
-			double low  = 1.0;
-			double high = std::max(1.0, m_options.aroundLimb / m_options.fewestAroundLimb);
+			double low = 1.0, high = mostCoarsening;
 			for (int k = 0; k < coarseningSteps; ++k) {
 				const double middle = 0.5 * (low + high);
 				(countOf(graded(middle, longest), longest) > limit ? low : high) = middle;
@@ -248,12 +249,15 @@ private:
 	// What bends and limbs allow, `coarser` times as long, and components, where it is below `longest`.
 	Eigen::VectorXd graded(double coarser, double longest) const
 	{
+		const double mostOnLimb =
+			std::max(1.0, m_options.aroundLimb / m_options.fewestAroundLimb);
 		using Entry = std::pair<double, Index>;
 		Eigen::VectorXd    size(m_count);
 		std::vector<Entry> start;
 		for (Index i = 0; i < m_count; ++i) {
 			const double bend = std::max(coarser * m_bend[i], m_spacing[i]);
-			const double limb = std::max(coarser * m_limb[i], shortestOnLimb * m_spacing[i]);
+			const double limb =
+				std::max(std::min(coarser, mostOnLimb) * m_limb[i], shortestOnLimb * m_spacing[i]);
 			size[i]           = std::min({bend, limb, m_component[i]});
 			if (size[i] < longest)
 				start.emplace_back(size[i], i);

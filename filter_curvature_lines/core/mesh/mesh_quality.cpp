@@ -1,0 +1,85 @@
+// Faces against the normals of their vertices, points against their nearest face.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "mesh_distance.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
+#include "progress.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double coveredEdges = 2.0;
+
+double meanEdge(const PolygonMesh& mesh, Index f)
+{
+	const NeighborLists::Row face = mesh.faces[f];
+	double                   sum  = 0.0;
+	for (Index k = 0; k < face.size(); ++k)
+		sum += (mesh.vertices.col(face[k]) - mesh.vertices.col(face[(k + 1) % face.size()])).norm();
+	return sum / double(std::max<Index>(face.size(), 1));
+}
+
+} // namespace
+
+Index foldedFaces(const PolygonMesh& mesh)
+{
+	Index count = 0;
+	for (Index f = 0; f < mesh.faceCount(); ++f) {
+		const NeighborLists::Row face    = mesh.faces[f];
+		Vector3d                 area    = Vector3d::Zero();
+		Vector3d                 normals = Vector3d::Zero();
+		const Vector3d           origin  = mesh.vertices.col(face[0]);
+		for (Index k = 0; k < face.size(); ++k) {
+			const Vector3d here = mesh.vertices.col(face[k]);
+			const Vector3d next = mesh.vertices.col(face[(k + 1) % face.size()]);
+			area += (here - origin).cross(next - origin);
+			normals += mesh.normals.col(face[k]);
+		}
+		count += area.dot(normals) < 0.0;
+	}
+	return count;
+}
+
+double scaledJacobian(const PolygonMesh& mesh, Index f)
+{
+	const NeighborLists::Row face   = mesh.faces[f];
+	const Index              count  = face.size();
+	Vector3d                 normal = Vector3d::Zero();
+	for (const Index v : face)
+		normal += mesh.normals.col(v);
+	normal.normalize();
+	double least = 1.0;
+	for (Index k = 0; k < count; ++k) {
+		const Vector3d here  = mesh.vertices.col(face[k]);
+		const Vector3d ahead = mesh.vertices.col(face[(k + 1) % count]) - here;
+		const Vector3d back  = mesh.vertices.col(face[(k + count - 1) % count]) - here;
+		const double   sine  = ahead.cross(back).dot(normal);
+		least                = std::min(least, sine / (ahead.norm() * back.norm() + 1e-300));
+	}
+	return least;
+}
+
+MeshCoverage
+coverageOf(const PolygonMesh& mesh, const Eigen::Matrix3Xd& points, const Progress& progress)
+{
+	MeshCoverage       coverage;
+	const MeshDistance found = distanceToMesh(mesh, points, progress);
+	for (Eigen::Index i = 0; i < points.cols(); ++i) {
+		const Index f       = found.face[i];
+		coverage.largestGap = std::max(coverage.largestGap, found.distance[i]);
+		coverage.uncovered += f < 0 || found.distance[i] > coveredEdges * meanEdge(mesh, f);
+	}
+	return coverage;
+}
+
+} // namespace curvature_lines

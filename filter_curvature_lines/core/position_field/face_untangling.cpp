@@ -1,0 +1,135 @@
+// Smart Laplacian smoothing (Freitag 1997) of the vertices of unsound faces, each step projected onto the surface.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "face_untangling.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "cloud_index.h"
+#include "curvature_field.h"
+#include "mesh_quality.h"
+#include "neighborhoods.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
+#include "surface_projection.h"
+
+namespace curvature_lines {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Faces below this scaled Jacobian are unsound: with a corner of more than 174 degrees, or turned over.
+constexpr double sound  = 0.1;
+constexpr int    rounds = 8;
+// Shares of the way to the mean of the neighbours that are tried.
+constexpr double shares[] = {1.0, 0.5, 0.25};
+
+class Untangling {
+public:
+	Untangling(
+		const CloudIndex&        index,
+		const CurvatureField&    curvature,
+		const std::vector<char>& fixed,
+		PolygonMesh&             mesh) :
+			m_index(index), m_curvature(curvature), m_fixed(fixed), m_mesh(mesh),
+			m_faces(mesh.vertexCount())
+	{
+		for (Index f = 0; f < mesh.faceCount(); ++f)
+			for (const Index v : mesh.faces[f])
+				m_faces[v].push_back(f);
+	}
+
+	Index run()
+	{
+		std::vector<Index> bad = unsound();
+		for (int round = 0; round < rounds && !bad.empty(); ++round) {
+			std::vector<char> asked(m_mesh.vertexCount(), 0);
+			bool              moved = false;
+			for (const Index f : bad)
+				for (const Index v : m_mesh.faces[f])
+					if (!m_fixed[v] && !std::exchange(asked[v], 1))
+						moved = improve(v) || moved;
+			bad = unsound();
+			if (!moved)
+				break;
+		}
+		return static_cast<Index>(bad.size());
+	}
+
+private:
+	std::vector<Index> unsound() const
+	{
+		std::vector<Index> bad;
+		for (Index f = 0; f < m_mesh.faceCount(); ++f)
+			if (scaledJacobian(m_mesh, f) < sound)
+				bad.push_back(f);
+		return bad;
+	}
+
+	double worstAround(Index v) const
+	{
+		double worst = 1.0;
+		for (const Index f : m_faces[v])
+			worst = std::min(worst, scaledJacobian(m_mesh, f));
+		return worst;
+	}
+
+	// Mean of the vertices that an edge joins to v; every inner edge counts twice.
+	Vector3d meanOfNeighbors(Index v) const
+	{
+		Vector3d sum = Vector3d::Zero();
+		for (const Index f : m_faces[v]) {
+			const NeighborLists::Row face = m_mesh.faces[f];
+			const auto at = static_cast<Index>(std::find(face.begin(), face.end(), v) - face.begin());
+			sum += m_mesh.vertices.col(face[(at + 1) % face.size()]);
+			sum += m_mesh.vertices.col(face[(at + face.size() - 1) % face.size()]);
+		}
+		return sum / (2.0 * double(m_faces[v].size()));
+	}
+
+	bool improve(Index v)
+	{
+		const Vector3d position = m_mesh.vertices.col(v), normal = m_mesh.normals.col(v);
+		const Vector3d mean   = meanOfNeighbors(v);
+		const double   before = worstAround(v);
+		for (const double share : shares) {
+			const Vector3d      p = position + share * (mean - position);
+			const SurfaceSample sample = projectToSurface(
+				m_index.cloud(),
+				m_curvature,
+				p,
+				closestOnSide(m_index, p, normal),
+				ProjectionKind::Mixed);
+			m_mesh.vertices.col(v) = sample.position;
+			m_mesh.normals.col(v)  = sample.normal;
+			if (worstAround(v) > before)
+				return true;
+		}
+		m_mesh.vertices.col(v) = position;
+		m_mesh.normals.col(v)  = normal;
+		return false;
+	}
+
+	const CloudIndex&               m_index;
+	const CurvatureField&           m_curvature;
+	const std::vector<char>&        m_fixed;
+	PolygonMesh&                    m_mesh;
+	std::vector<std::vector<Index>> m_faces; // around every vertex
+};
+
+} // namespace
+
+Index untangleFaces(
+	const CloudIndex&        index,
+	const CurvatureField&    curvature,
+	const std::vector<char>& fixed,
+	PolygonMesh&             mesh)
+{
+	return Untangling(index, curvature, fixed, mesh).run();
+}
+
+} // namespace curvature_lines

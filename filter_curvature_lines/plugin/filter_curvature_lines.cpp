@@ -121,6 +121,8 @@ std::map<std::string, QVariant> FilterCurvatureLines::applyFilter(
 		// MeshLab's window drops the dictionary, so the log carries it.
 		for (const auto& [key, value] : results.values())
 			log("%s: %s", key.c_str(), value.toString().toStdString().c_str());
+		for (const std::string& sentence : results.warnings())
+			log("Warning: %s", sentence.c_str());
 		return results.values();
 	}
 	catch (const MLException& error) {

@@ -1,6 +1,8 @@
 // Surface Reconstruction: Curvature-Aligned Quads: core/reconstruction (A09 fig. 1) on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include <Eigen/Core>
@@ -146,6 +148,9 @@ void writeCleanedCloud(
 	writeAttribute(layer, points, "moved", frame.diagonal * result.moves);
 }
 
+// Share of the points that must be missing for a warning.
+constexpr double toldUncovered = 0.001;
+
 void reportStages(FilterResults& results, const ReconstructionResult& result)
 {
 	results.count("outliers", std::count(result.outlier.begin(), result.outlier.end(), char(1)));
@@ -158,6 +163,7 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 	results.count("filled_holes", result.mesh.filledHoles);
 	results.count("dropped_components", result.mesh.droppedComponents);
 	results.count("repaired_components", result.mesh.repairedComponents);
+	results.count("caps", result.mesh.caps);
 	results.count(
 		"umbilic",
 		std::count(result.umbilics.umbilic.begin(), result.umbilics.umbilic.end(), char(1)));
@@ -168,6 +174,35 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 	results.real("epsilon", result.lines.epsilon);
 	for (const auto& [stage, seconds] : result.seconds)
 		results.seconds(stage, seconds);
+}
+
+// What the mesh does not show, and what is wrong with it, in numbers and where it matters in words.
+void reportLosses(
+	FilterResults& results, const ReconstructionResult& result, Index target, double diagonal)
+{
+	const double points    = std::max<double>(1.0, double(result.cloud.size()));
+	const double uncovered = double(result.coverage.uncovered) / points;
+	results.count("warnings", 0);
+	results.real("uncovered_share", uncovered);
+	results.real("largest_gap", result.coverage.largestGap * diagonal);
+	results.count("folded_faces", result.foldedFaces);
+	const double extra = target > 0 ? result.mesh.expectedVertices - double(target) : 0.0;
+	results.count("limb_vertices", extra > 0.02 * double(target) ? std::lround(extra) : 0);
+	if (uncovered > toldUncovered)
+		results.warn(
+			std::to_string(result.coverage.uncovered) +
+			" points that were kept are farther than two edges from the mesh (uncovered_share). "
+			"Raise 'target_vertices', or check the cloud there: it may be too sparse for a "
+		    "surface.");
+	if (result.foldedFaces > 0)
+		results.warn(
+			std::to_string(result.foldedFaces) +
+			" faces are folded over (folded_faces). Raise 'target_vertices', or clean the cloud.");
+	if (result.mesh.droppedComponents > 0)
+		results.warn(
+			std::to_string(result.mesh.droppedComponents) +
+			" pieces were too small for faces and are left out (dropped_components). Raise "
+			"'target_vertices' to keep them.");
 }
 
 FilterResults apply(const FilterContext& context, const Options& options)
@@ -222,6 +257,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	reportStages(results, result);
 	results.count("crossings", result.mesh.crossings);
 	reportMesh(results, topology);
+	reportLosses(results, result, options.pipeline.tracing.targetVertices, prepared.diagonal);
 	results.seconds("total", total.seconds());
 	return results;
 }

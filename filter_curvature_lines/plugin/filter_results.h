@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <QVariant>
 
@@ -22,10 +23,19 @@ public:
 	void flag(const std::string& key, bool value) { m_values[key] = value; }
 	void seconds(const std::string& stage, double value) { real("seconds_" + stage, value); }
 
+	// A sentence for the log: what was lost and what to do. The dictionary carries how many there are.
+	void warn(const std::string& sentence)
+	{
+		m_warnings.push_back(sentence);
+		count("warnings", static_cast<std::ptrdiff_t>(m_warnings.size()));
+	}
+
 	const std::map<std::string, QVariant>& values() const { return m_values; }
+	const std::vector<std::string>& warnings() const { return m_warnings; }
 
 private:
 	std::map<std::string, QVariant> m_values;
+	std::vector<std::string>        m_warnings;
 };
 
 class Stopwatch {

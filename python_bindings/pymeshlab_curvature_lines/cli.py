@@ -219,6 +219,8 @@ def _run(job: Job, options: argparse.Namespace) -> None:
         result.save(result.lines, job.lines)
     if job.curvature:
         result.save_curvature(job.curvature)
+    for sentence in result.losses():
+        print(f"curvature-lines: {job.cloud.name}: {sentence}", file=sys.stderr)
     if not options.quiet:
         for name, value in result.counts.items():
             print(f"{name.replace('_', ' '):<28}{number(value):>12}")

@@ -18,6 +18,8 @@ Report = Callable[[str, int], None]
 
 _SAVED_ATTRIBUTE = "__ca_vs__"  # how the host calls "save this scalar attribute of vertices"
 
+TOLD_UNCOVERED = 0.001  # share of the points, as the filter's own warnings
+
 
 @dataclass
 class Reconstruction:
@@ -43,6 +45,22 @@ class Reconstruction:
         offered = self.meshset.filter_parameter_values("ply")
         attributes = {name: True for name in offered if name.startswith(_SAVED_ATTRIBUTE)}
         self.meshset.save_current_mesh(str(file), save_vertex_normal=True, save_vertex_quality=True, **attributes)
+
+    def losses(self) -> list[str]:
+        """What the mesh does not show or shows wrong, in sentences; none when all is well."""
+        counts, found = self.counts, []
+        if counts["uncovered_share"] > TOLD_UNCOVERED:
+            share = 100 * counts["uncovered_share"]
+            found.append(
+                f"{share:.2g} % of the points are farther than two edges from the mesh; try more target vertices"
+            )
+        if counts["folded_faces"]:
+            found.append(f"{counts['folded_faces']:.0f} faces are folded over; try more target vertices")
+        if counts["dropped_components"]:
+            found.append(
+                f"{counts['dropped_components']:.0f} pieces were too small for faces; try more target vertices"
+            )
+        return found
 
     def parameters(self, given: dict[str, object]) -> dict[str, object]:
         """All parameters of the whole pipeline: those given, and the defaults of the rest."""

@@ -25,9 +25,9 @@ struct CrossedSurface {
 inline CrossedSurface crossed(TriangulatedSurface surface)
 {
 	CrossedSurface result;
-	const Index    n        = surface.size();
-	result.scaffold.mesh    = surface.mesh;
-	const double spacing    = std::sqrt(surface.mesh.vertexAreas().sum() / n);
+	const Index    n     = surface.size();
+	result.scaffold.mesh = surface.mesh;
+	const double spacing = std::sqrt(surface.mesh.vertexAreas().sum() / n);
 	result.scaffold.spacing.setConstant(n, spacing);
 	result.scaffold.size.setConstant(n, 2.0 * spacing);
 	result.scaffold.source.resize(n);

@@ -23,7 +23,7 @@ struct MeshCoverage {
 };
 
 // `points`, 3 x N: those the mesh is to show.
-MeshCoverage coverageOf(
-	const PolygonMesh& mesh, const Eigen::Matrix3Xd& points, const Progress& progress = {});
+MeshCoverage
+coverageOf(const PolygonMesh& mesh, const Eigen::Matrix3Xd& points, const Progress& progress = {});
 
 } // namespace curvature_lines

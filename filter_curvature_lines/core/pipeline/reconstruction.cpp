@@ -9,6 +9,7 @@
 #include "curvature_estimate.h"
 #include "denoising.h"
 #include "mesh_finishing.h"
+#include "mesh_quality.h"
 #include "progress.h"
 #include "quad_mesh.h"
 #include "stages.h"
@@ -48,6 +49,15 @@ ReconstructionResult resultOf(NoisyPoints noisy, CleanSurface surface)
 	return result;
 }
 
+// What the mesh does not show of the cloud, and its folds.
+void judgeMesh(ReconstructionResult& result, StageClock& clock, const Progress& progress)
+{
+	result.coverage    = coverageOf(result.mesh.mesh, result.cloud.positions, progress);
+	result.foldedFaces = foldedFaces(result.mesh.mesh);
+	clock.book("coverage");
+	result.seconds = clock.seconds();
+}
+
 } // namespace
 
 ReconstructionResult
@@ -79,14 +89,14 @@ adaptiveRecipe(CloudIndex given, const ReconstructionOptions& options, const Pro
 		surface,
 		{options.creases, options.tracing, options.anisotropy, options.mesh, options.keepLines},
 		clock,
-		progress.sub(0.65, 1.0, ""));
+		progress.sub(0.65, 0.98, ""));
 
 	ReconstructionResult result = resultOf(std::move(noisy), std::move(surface));
 	result.umbilics             = std::move(umbilics);
 	result.creases              = std::move(mesh.creases);
 	result.mesh                 = std::move(mesh.mesh);
 	result.lines                = std::move(result.mesh.lines);
-	result.seconds              = clock.seconds();
+	judgeMesh(result, clock, progress.sub(0.98, 1.0, "Comparing the mesh with the cloud"));
 	return result;
 }
 
@@ -110,7 +120,7 @@ publishedRecipe(CloudIndex given, const ReconstructionOptions& options, const Pr
 		traced.cells,
 		traced.lines,
 		options.mesh,
-		progress.sub(0.93, 1.0, "Building the mesh"));
+		progress.sub(0.93, 0.98, "Building the mesh"));
 	clock.book("mesh");
 
 	surface.field                           = std::move(traced.field);
@@ -118,7 +128,7 @@ publishedRecipe(CloudIndex given, const ReconstructionOptions& options, const Pr
 	result.umbilics                         = std::move(traced.umbilics);
 	result.lines                            = std::move(traced.lines);
 	static_cast<FinishedMesh&>(result.mesh) = std::move(mesh);
-	result.seconds                          = clock.seconds();
+	judgeMesh(result, clock, progress.sub(0.98, 1.0, "Comparing the mesh with the cloud"));
 	return result;
 }
 

@@ -16,6 +16,7 @@
 #include "line_network.h"
 #include "line_tracing.h"
 #include "mesh_finishing.h"
+#include "mesh_quality.h"
 #include "outlier_rejection.h"
 #include "point_cloud.h"
 #include "position_field_mesh.h"
@@ -67,6 +68,9 @@ struct ReconstructionResult {
 	LineNetwork             lines;   // TracedLines, or if keepLines
 	Creases                 creases; // PositionField
 	PositionFieldMeshResult mesh;    // TracedLines: without what is particular to position fields
+	// Of the mesh, against `cloud`: what it does not show, and what is wrong with it
+	MeshCoverage coverage;
+	Index        foldedFaces = 0;
 	// RobustDenoisingResult::pointDeviation; without denoising OutlierResult::heightDeviation; else 0
 	double                        noise = 0.0;
 	Eigen::VectorXd               moves;         // per point of `cloud`, lengths: by denoising

@@ -205,7 +205,7 @@ DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& cu
 	guide.directions.setZero(3, n);
 	guide.weights.setZero(n);
 	guide.onCrease.assign(n, 0);
-	const Eigen::VectorXd  areas = mesh.vertexAreas();
+	const Eigen::VectorXd areas = mesh.vertexAreas();
 	const double cell = (scaffold.size.size() > 0 ? scaffold.size : scaffold.spacing).maxCoeff();
 	for (Index v = 0; v < n; ++v) {
 		const Index i = scaffold.source[v];

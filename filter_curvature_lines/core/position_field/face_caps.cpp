@@ -99,8 +99,8 @@ public:
 		const CurvatureField& curvature,
 		double                bulge,
 		const PolygonMesh&    mesh) :
-			m_index(index), m_curvature(curvature), m_bulge(bulge), m_mesh(mesh), m_apex(mesh.faceCount(), -1),
-			m_loops(faceLoopsOf(mesh)), m_shapes(shapesOf(mesh)),
+			m_index(index), m_curvature(curvature), m_bulge(bulge), m_mesh(mesh),
+			m_apex(mesh.faceCount(), -1), m_loops(faceLoopsOf(mesh)), m_shapes(shapesOf(mesh)),
 			m_centerPoints(centersOf(m_shapes)), m_centers(m_centerPoints)
 	{
 		for (Index v = 0; v < mesh.vertexCount(); ++v) {
@@ -182,8 +182,8 @@ private:
 			p += share * (apex - p);
 			const Vector3d out =
 				p - shape.center - (p - shape.center).dot(axis) / (height * height) * axis;
-			const Vector3d side   = (out.normalized() + 0.5 * axis / height).normalized();
-			Vector3d       normal = side;
+			const Vector3d      side   = (out.normalized() + 0.5 * axis / height).normalized();
+			Vector3d            normal = side;
 			const SurfaceSample sample = projectToSurface(
 				m_index.cloud(),
 				m_curvature,
@@ -237,11 +237,11 @@ private:
 		m_loops[f] = below;
 	}
 
-	const CloudIndex&      m_index;
-	const CurvatureField&  m_curvature;
-	double                 m_bulge;
-	const PolygonMesh&     m_mesh;
-	std::vector<Index>     m_apex; // of every face: its highest point; -1: it does not bulge
+	const CloudIndex&     m_index;
+	const CurvatureField& m_curvature;
+	double                m_bulge;
+	const PolygonMesh&    m_mesh;
+	std::vector<Index>    m_apex; // of every face: its highest point; -1: it does not bulge
 	std::vector<std::vector<Index>> m_loops;
 	std::vector<FaceShape>          m_shapes;
 	Eigen::Matrix3Xd                m_centerPoints;

@@ -84,7 +84,8 @@ private:
 		Vector3d sum = Vector3d::Zero();
 		for (const Index f : m_faces[v]) {
 			const NeighborLists::Row face = m_mesh.faces[f];
-			const auto at = static_cast<Index>(std::find(face.begin(), face.end(), v) - face.begin());
+			const auto               at =
+				static_cast<Index>(std::find(face.begin(), face.end(), v) - face.begin());
 			sum += m_mesh.vertices.col(face[(at + 1) % face.size()]);
 			sum += m_mesh.vertices.col(face[(at + face.size() - 1) % face.size()]);
 		}
@@ -97,7 +98,7 @@ private:
 		const Vector3d mean   = meanOfNeighbors(v);
 		const double   before = worstAround(v);
 		for (const double share : shares) {
-			const Vector3d      p = position + share * (mean - position);
+			const Vector3d      p      = position + share * (mean - position);
 			const SurfaceSample sample = projectToSurface(
 				m_index.cloud(),
 				m_curvature,

@@ -131,7 +131,8 @@ Eigen::VectorXd smallestEigenvectors(
 {
 	const auto      pairs = static_cast<Index>(set.size());
 	Eigen::VectorXd x(2 * pairs);
-	for (Index i = 0; i < pairs; ++i) { // any start that is not orthogonal to the smallest eigenvectors
+	for (Index i = 0; i < pairs;
+	     ++i) { // any start that is not orthogonal to the smallest eigenvectors
 		const double angle = fullTurn * std::fmod(0.6180339887498949 * i, 1.0);
 		x.segment<2>(2 * i) << std::cos(angle), std::sin(angle);
 	}
@@ -173,8 +174,8 @@ Eigen::VectorXcd periodicStart(
 		hard.segment<2>(2 * i).setConstant(weight);
 		right[2 * i] = weight;
 	}
-	const auto isPinned = [&](Index name) { return pinned[name] != 0; };
-	Eigen::VectorXd x   = Eigen::VectorXd::Zero(4 * n);
+	const auto      isPinned = [&](Index name) { return pinned[name] != 0; };
+	Eigen::VectorXd x        = Eigen::VectorXd::Zero(4 * n);
 	Solver          solver;
 	solver.analyzePattern(matrix);
 	if (!std::all_of(set.begin(), set.end(), isPinned)) {

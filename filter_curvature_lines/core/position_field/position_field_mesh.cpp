@@ -143,8 +143,8 @@ void projectVertices(
 	PolygonMesh&             mesh,
 	const Progress&          progress)
 {
-	const PointCloud&       cloud  = index.cloud();
-	const std::vector<char> rim    = onRim(mesh);
+	const PointCloud&       cloud = index.cloud();
+	const std::vector<char> rim   = onRim(mesh);
 	parallelFor(mesh.vertexCount(), progress, [&](Index v) {
 		if (fixed[v] && !rim[v])
 			return;
@@ -214,9 +214,10 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	const PhasePins        pins     = featurePins(alignment, field);
 	const SurfaceFeatures& features = alignment.features;
 	LineDensityOptions     wanted;
-	wanted.targetVertices = resized(scaffold, sizing, forSizes);
-	wanted.anisotropy     = options.anisotropy;
-	LineDensity density   = lineDensity(scaffold, field, curvature, wanted);
+	wanted.targetVertices   = resized(scaffold, sizing, forSizes);
+	wanted.anisotropy       = options.anisotropy;
+	result.expectedVertices = wanted.targetVertices;
+	LineDensity density     = lineDensity(scaffold, field, curvature, wanted);
 	progress.report(0.5);
 	FieldMesh meshed = meshOfTargetSize(
 		scaffold,

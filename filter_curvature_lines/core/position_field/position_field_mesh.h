@@ -29,14 +29,16 @@ struct PositionFieldMeshOptions {
 };
 
 struct PositionFieldMeshResult : FinishedMesh {
-	Index       scaffoldVertices = 0, scaffoldEuler = 0;
-	Index       singularTriangles = 0, lineEnds = 0;
-	Index       droppedComponents  = 0; // too small for a mesh, or without any line
-	Index       repairedComponents = 0;
-	Index       filledHoles = 0, lostCreaseEdges = 0;
-	Index       unsoundFaces = 0; // not convex, or turned over, as far as untangleFaces() knows
-	Index       caps = 0; // faces that went on to the tip of a part no line crosses
-	LineNetwork lines;    // if keepLines
+	Index scaffoldVertices = 0, scaffoldEuler = 0;
+	Index singularTriangles = 0, lineEnds = 0;
+	Index droppedComponents  = 0; // too small for a mesh, or without any line
+	Index repairedComponents = 0;
+	Index filledHoles = 0, lostCreaseEdges = 0;
+	Index unsoundFaces = 0; // not convex, or turned over, as far as untangleFaces() knows
+	// That the sizes ask for; more than the target where limbs need more
+	double      expectedVertices = 0.0;
+	Index       caps             = 0; // faces that went on to the tip of a part no line crosses
+	LineNetwork lines;                // if keepLines
 };
 
 // The cloud's normals are those of the surface. Points that keep their noise are put on the surfaces fitted

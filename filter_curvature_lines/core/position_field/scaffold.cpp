@@ -39,7 +39,7 @@ constexpr double limbDistance = 0.45;
 // Triangles behind the neck through which the front twists, at least; edges of the neck, at most: few, or few for what is
 // behind (times the root of the number of triangles; 2.3 around a disk, such as a patch of normals that point inwards).
 constexpr Index  fewestTwisted = 6, widestNeck = 4;
-constexpr double neckOfRoot    = 0.7;
+constexpr double neckOfRoot = 0.7;
 // Clearance in noise units: the denoised points beside a crease are round. By experiment on cubes.
 constexpr double noiseClearance = 2.0;
 // Attempts with vertices farther and farther apart, and by how much; and others with a slightly different
@@ -175,7 +175,7 @@ void untwist(ScaffoldSites& sites, Scaffold& scaffold, std::vector<Triangle>& tr
 		++size[sets.find(t)];
 	bool any = false;
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
-		const Index set = sets.find(t);
+		const Index  set    = sets.find(t);
 		const double widest = std::max<double>(widestNeck, neckOfRoot * std::sqrt(size[set]));
 		if (!against[t] || neck[set] > widest || size[set] < fewestTwisted)
 			continue;

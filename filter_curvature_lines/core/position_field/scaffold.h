@@ -38,12 +38,13 @@ struct Scaffold {
 	std::vector<Index> source;     // of every vertex: its point of the cloud; -1: there is none
 	std::vector<Index> place;      // of every vertex: the point of the cloud that is nearest
 	std::vector<char>  creaseEdge; // of every edge
-	std::vector<char>  onLimb;     // of every vertex: SizingField::limb bounds its size; empty: nothing is known
-	Eigen::VectorXd    spacing;    // of every vertex, a length: wanted to its neighbours
-	Eigen::VectorXd    size;       // of every vertex, a length: edge of the quad mesh; empty: any
-	Index              components = 0, droppedComponents = 0;
-	Index filledHoles = 0, defects = 0; // places where the front did not close by itself
-	Index lostCreaseEdges = 0;
+	std::vector<char>
+		onLimb; // of every vertex: SizingField::limb bounds its size; empty: nothing is known
+	Eigen::VectorXd spacing; // of every vertex, a length: wanted to its neighbours
+	Eigen::VectorXd size;    // of every vertex, a length: edge of the quad mesh; empty: any
+	Index           components = 0, droppedComponents = 0;
+	Index           filledHoles = 0, defects = 0; // places where the front did not close by itself
+	Index           lostCreaseEdges = 0;
 	Index unusedSites = 0; // points that were to be vertices and are in no triangle that was kept
 
 	bool hasCreases() const;

@@ -249,16 +249,15 @@ private:
 	// What bends and limbs allow, `coarser` times as long, and components, where it is below `longest`.
 	Eigen::VectorXd graded(double coarser, double longest) const
 	{
-		const double mostOnLimb =
-			std::max(1.0, m_options.aroundLimb / m_options.fewestAroundLimb);
-		using Entry = std::pair<double, Index>;
+		const double mostOnLimb = std::max(1.0, m_options.aroundLimb / m_options.fewestAroundLimb);
+		using Entry             = std::pair<double, Index>;
 		Eigen::VectorXd    size(m_count);
 		std::vector<Entry> start;
 		for (Index i = 0; i < m_count; ++i) {
 			const double bend = std::max(coarser * m_bend[i], m_spacing[i]);
 			const double limb =
 				std::max(std::min(coarser, mostOnLimb) * m_limb[i], shortestOnLimb * m_spacing[i]);
-			size[i]           = std::min({bend, limb, m_component[i]});
+			size[i] = std::min({bend, limb, m_component[i]});
 			if (size[i] < longest)
 				start.emplace_back(size[i], i);
 			else

@@ -74,4 +74,48 @@ inline Eigen::Matrix3Xd sampledRevolution(const Profile& profile, int n, std::ui
 	return points;
 }
 
+// A sphere that ends in a cone or a rod of this radius, 1 high, with all that is known of its points.
+struct ThinSolid {
+	bool   cone   = false;
+	double radius = 0.1;
+
+	Profile profile() const
+	{
+		return cone ? sphereWithCone(radius, 1.0) : sphereWithRod(radius, 1.0);
+	}
+
+	samples::SampleCloud sampled(int n, std::uint64_t seed) const
+	{
+		using Eigen::Vector3d;
+		samples::SampleCloud sample;
+		sample.positions = sample.footPoints = sampledRevolution(profile(), n, seed);
+		sample.normals = sample.d1 = sample.d2 = sample.positions;
+		sample.k1.setOnes(n);
+		sample.k2.setOnes(n);
+		sample.label.setZero(n);
+		const double base = std::sqrt(1.0 - radius * radius); // where cone and rod begin
+		for (int i = 0; i < n; ++i) {
+			const Vector3d p   = sample.positions.col(i);
+			const double   out = std::hypot(p.x(), p.y()) + 1e-12;
+			const Vector3d around(-p.y() / out, p.x() / out, 0.0);
+			Vector3d       normal = p;
+			if (p.norm() > 1.0 + 1e-9 && cone) {
+				normal       = Vector3d(p.x() / out, p.y() / out, radius);
+				sample.k1[i] = 1.0 / (out * std::hypot(1.0, radius));
+				sample.k2[i] = 0.0;
+			}
+			else if (p.norm() > 1.0 + 1e-9) {
+				const double up = std::max(0.0, p.z() - base - 1.0);
+				normal          = Vector3d(p.x(), p.y(), up);
+				sample.k1[i]    = 1.0 / radius;
+				sample.k2[i]    = up > 0.0 ? 1.0 / radius : 0.0;
+			}
+			sample.normals.col(i) = normal.normalized();
+			sample.d1.col(i)      = around;
+			sample.d2.col(i)      = sample.normals.col(i).cross(around);
+		}
+		return sample;
+	}
+};
+
 } // namespace curvature_lines::test

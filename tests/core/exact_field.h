@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "analytic_surfaces.h"
@@ -54,15 +55,20 @@ inline CurvatureField exactField(
 	return field;
 }
 
-inline ExactCloud exactCloud(const samples::SampleRequest& request)
+inline ExactCloud exactCloud(samples::SampleCloud sample)
 {
 	ExactCloud result;
-	result.sample = samples::generate(request);
+	result.sample = std::move(sample);
 	result.cloud  = {result.sample.positions, result.sample.normals};
 	const NeighborSearch search(result.cloud.positions);
 	result.minimum = minimumNeighborhoods(result.cloud, search);
 	result.field   = exactField(result.sample, result.cloud, search, result.minimum);
 	return result;
+}
+
+inline ExactCloud exactCloud(const samples::SampleRequest& request)
+{
+	return exactCloud(samples::generate(request));
 }
 
 // Angle between two lines, 0 .. pi/2.

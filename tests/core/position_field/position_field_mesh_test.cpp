@@ -17,8 +17,10 @@
 #include "exact_field.h"
 #include "line_network.h"
 #include "line_networks.h"
+#include "mesh_distance.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
+#include "thin_shapes.h"
 
 namespace curvature_lines {
 namespace {
@@ -191,6 +193,126 @@ TEST(PositionFieldMesh, IsTheSameForAnyNumberOfThreads)
 	omp_set_num_threads(threads);
 	EXPECT_EQ(one.mesh.vertices, three.mesh.vertices);
 	EXPECT_EQ(one.mesh.faces.indices, three.mesh.faces.indices);
+}
+
+struct Thin {
+	test::ThinSolid solid;
+	int             points;
+};
+
+// Faces around at this height: edges that a plane cuts.
+Index facesAround(const PolygonMesh& mesh, double z)
+{
+	Index cut = 0;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		for (Index k = 0; k < mesh.faces[f].size(); ++k)
+			cut += mesh.vertices(2, mesh.faces[f][k]) < z &&
+			       mesh.vertices(2, mesh.faces[f][(k + 1) % mesh.faces[f].size()]) >= z;
+	return cut;
+}
+
+// When edges were as long everywhere tips ended 6 % of the diagonal below their points, and rods were gone.
+TEST(PositionFieldMesh, TipsAndRodsAreMeshedToTheirEnds)
+{
+	for (const Thin& thin :
+	     {Thin{{true, 0.25}, 8000},
+	      Thin{{true, 0.15}, 8000},
+	      Thin{{false, 0.1}, 4000},
+	      Thin{{false, 0.05}, 8000}})
+		for (const double target : {500.0, 1500.0}) {
+			SCOPED_TRACE(
+				testing::Message() << thin.solid.cone << " " << thin.solid.radius << " " << target);
+			const test::ExactCloud   exact = test::exactCloud(thin.solid.sampled(thin.points, 1));
+			PositionFieldMeshOptions options;
+			options.targetVertices = target;
+			options.automatic      = target == 500.0;
+			const PositionFieldMeshResult result =
+				buildPositionFieldMesh(exact.cloud, exact.field, {}, options);
+			expectManifold(result, 2, 0);
+			EXPECT_GE(result.topology.quads, 0.92 * result.topology.faces);
+			EXPECT_GE(result.topology.vertices, 0.95 * target);
+			EXPECT_LE(result.topology.vertices, (options.automatic ? 1.5 : 1.05) * target);
+			const Eigen::Matrix3Xd& points = exact.cloud.positions;
+			const double            diagonal =
+				(points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+			const Eigen::VectorXd distance = distanceToMesh(result.mesh, points).distance;
+			EXPECT_LT(distance.maxCoeff(), 0.025 * diagonal); // at the foot: no crease was given
+			for (Index i = 0; i < thin.points; ++i)
+				if (points(2, i) > 1.15) {
+					EXPECT_LT(distance[i], 0.008 * diagonal) << points.col(i).transpose();
+				}
+			if (!thin.solid.cone) {
+				for (const double z : {1.3, 1.5, 1.7})
+					EXPECT_GE(facesAround(result.mesh, z), 5) << z;
+			}
+		}
+}
+
+// Two sheets a third of an edge apart that look away from each other: vertices of one are not put on the other.
+TEST(PositionFieldMesh, VerticesStayOnTheirSideOfAThinWall)
+{
+	const double         inner = 0.95;
+	samples::SampleCloud sample;
+	const auto           sphere = samples::generate(request("sphere", 4000));
+	const auto           other  = samples::generate([] {
+        auto result = request("sphere", 3600);
+        result.seed = 9;
+        return result;
+    }());
+	const Eigen::Index   n      = 7600;
+	sample.positions.resize(3, n);
+	sample.positions << sphere.positions, inner * other.positions;
+	sample.normals.resize(3, n);
+	sample.normals << sphere.normals, -other.normals;
+	sample.d1.resize(3, n);
+	sample.d1 << sphere.d1, other.d1;
+	sample.d2.resize(3, n);
+	sample.d2 << sphere.d2, -other.d2;
+	sample.k1.resize(n);
+	sample.k1 << sphere.k1, -other.k1 / inner;
+	sample.k2                            = sample.k1;
+	const PositionFieldMeshResult result = meshOf(test::exactCloud(sample), 1000);
+	EXPECT_EQ(result.topology.components, 2);
+	EXPECT_EQ(result.topology.eulerCharacteristic, 4);
+	EXPECT_EQ(result.topology.boundaryLoops, 0);
+	Index outside = 0, inside = 0;
+	for (Index v = 0; v < result.mesh.vertexCount(); ++v) {
+		const Eigen::Vector3d p     = result.mesh.vertices.col(v);
+		const bool            isOut = result.mesh.normals.col(v).dot(p) > 0.0;
+		EXPECT_NEAR(p.norm(), isOut ? 1.0 : inner, 0.005);
+		++(isOut ? outside : inside);
+	}
+	EXPECT_GT(outside, 400);
+	EXPECT_GT(inside, 300);
+}
+
+// Not on the chords of the scaffold's rim, which leave a curved surface.
+TEST(PositionFieldMesh, RimVerticesAreOnTheSurface)
+{
+	const PositionFieldMeshResult result =
+		meshOf(test::exactCloud(request("half_torus", 6000)), 400);
+	const samples::AnalyticSurface& surface = samples::surface("half_torus");
+	expectManifold(result, 0, 2);
+	std::map<std::pair<Index, Index>, int> sides;
+	for (Index f = 0; f < result.mesh.faceCount(); ++f)
+		for (Index k = 0; k < result.mesh.faces[f].size(); ++k)
+			++sides[std::minmax(
+				result.mesh.faces[f][k],
+				result.mesh.faces[f][(k + 1) % result.mesh.faces[f].size()])];
+	double off = 0.0, length = 0.0, count = 0.0;
+	for (const auto& [side, faces] : sides) {
+		if (faces != 1)
+			continue;
+		const Eigen::Vector3d a = result.mesh.vertices.col(side.first),
+							  b = result.mesh.vertices.col(side.second);
+		const double around     = a.head<2>().norm() - 1.0;
+		off += std::pow(std::hypot(around, a.z()) - 0.4, 2); // of the whole torus
+		length += (a - b).norm();
+		count += 1.0;
+		EXPECT_LT((surface.project(a) - a).norm(), 0.05);
+	}
+	EXPECT_GE(count, 20);
+	EXPECT_LT(std::sqrt(off / count), 0.02 * length / count);
 }
 
 TEST(PositionFieldMesh, TooFewPointsGiveAnEmptyMesh)

@@ -30,6 +30,8 @@ constexpr Index  largestFace = 6; // sides
 // Cosine between the way to such a point and the face's normal, at least; and faces nearby that are asked.
 constexpr double facing     = 0.5;
 constexpr Index  facesAsked = 16;
+// Cosine between the normals of point and face below which the point is on another sheet.
+constexpr double opposing = -0.3;
 // The last ring is at one of these shares of the way to the apex: the first that leaves it so near, in mean edges.
 constexpr double lastRings[] = {0.5, 0.65, 0.8, 0.9};
 constexpr double apexLeft    = 0.15;
@@ -141,6 +143,8 @@ private:
 	// The face that point i is above; -1: none, or not far.
 	Index faceBelow(Index i, const MeshDistance& found) const
 	{
+		if (found.face[i] < 0) // no face has an area
+			return -1;
 		const FaceShape& nearest = m_shapes[found.face[i]];
 		const double     share   = found.distance[i] / nearest.edge;
 		if (share < 0.5 * m_bulge)
@@ -166,7 +170,10 @@ private:
 		else if (share < tall && distanceToSides(m_mesh, f, foot) < besideSide * nearest.edge) {
 			return -1;
 		}
-		return f >= 0 && m_mesh.faces[f].size() <= largestFace ? f : -1;
+		if (f < 0 || m_mesh.faces[f].size() > largestFace)
+			return -1;
+		const Vector3d normal = m_index.cloud().normals.col(i);
+		return normal.dot(m_shapes[f].normal) > opposing ? f : -1;
 	}
 
 	// Between the corners of face f and the apex, on the surface.

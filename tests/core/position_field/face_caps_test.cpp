@@ -27,6 +27,8 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
+constexpr double bulge = 0.35;
+
 // Radius 1 at z = 0, the tip at z = height; its side alone, where random points lie even.
 struct Cone {
 	double height;
@@ -111,7 +113,7 @@ TEST(FaceCaps, AMeshOfAConeGoesOnToItsTip)
 		const MeshTopology whole  = topologyOf(before);
 		PolygonMesh        mesh   = before;
 		std::vector<char>  onFeature(mesh.vertexCount(), 1);
-		ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, mesh, onFeature), 1);
+		ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, mesh, onFeature), 1);
 
 		const double edge = 2.0 * std::sin(EIGEN_PI / cut.around) * (1.0 - cut.top / cut.height);
 		EXPECT_GT(farthestAbove(cut.top, exact.cloud.positions, before), edge);
@@ -164,7 +166,7 @@ TEST(FaceCaps, RingsLieOnTheSurface)
 	}
 	PolygonMesh       mesh = polygonMesh(vertices, vertices, faces);
 	std::vector<char> onFeature(12, 0);
-	ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, mesh, onFeature), 1);
+	ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, mesh, onFeature), 1);
 	ASSERT_GT(mesh.vertexCount(), 12);
 	for (Index v = 12; v < mesh.vertexCount(); ++v) {
 		EXPECT_NEAR(mesh.vertices.col(v).norm(), 1.0, 0.005);
@@ -179,7 +181,7 @@ TEST(FaceCaps, RingsAreNotTwisted)
 	const ExactCloud  exact = cone.cloud(8000);
 	PolygonMesh       mesh  = cone.cutAt(2.0, 4, 6);
 	std::vector<char> onFeature(mesh.vertexCount(), 0);
-	ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, mesh, onFeature), 1);
+	ASSERT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, mesh, onFeature), 1);
 	const FaceTriangles triangles = faceTriangles(mesh);
 	for (const auto& [a, b, c] : triangles.corners) {
 		const Vector3d normal = (b - a).cross(c - a).normalized();
@@ -209,7 +211,7 @@ TEST(FaceCaps, WhatDoesNotBulgeHasNone)
 		PolygonMesh mesh =
 			polygonMesh(vertices, std::vector<Vector3d>(vertices.size(), Vector3d::UnitZ()), faces);
 		std::vector<char> onFeature(mesh.vertexCount(), 0);
-		EXPECT_EQ(capBulgingFaces(plane.cloud, plane.field, mesh, onFeature), 0);
+		EXPECT_EQ(capBulgingFaces(plane.cloud, plane.field, bulge, mesh, onFeature), 0);
 		EXPECT_EQ(mesh.faceCount(), Index(cells * cells));
 	}
 	// A cone whose last face is at its tip.
@@ -217,25 +219,53 @@ TEST(FaceCaps, WhatDoesNotBulgeHasNone)
 	const ExactCloud  exact = cone.cloud(4000);
 	PolygonMesh       mesh  = cone.cutAt(2.97, 6, 12);
 	std::vector<char> onFeature(mesh.vertexCount(), 0);
-	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, mesh, onFeature), 0);
+	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, mesh, onFeature), 0);
 }
 
-// A cap stands for the end of a limb: faces of many sides are something else, and points below a face are another sheet.
-TEST(FaceCaps, LargeFacesAndPointsBelowAreLeftAlone)
+// A cap stands for the end of a limb: faces of many sides are something else.
+TEST(FaceCaps, LargeFacesAreLeftAlone)
 {
 	const Cone        cone{3.0};
 	const ExactCloud  exact = cone.cloud(6000);
 	PolygonMesh       eight = cone.cutAt(2.0, 8, 6);
 	std::vector<char> onFeature(eight.vertexCount(), 0);
-	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, eight, onFeature), 0);
+	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, eight, onFeature), 0);
+}
 
-	PolygonMesh                     quad  = cone.cutAt(2.0, 4, 6);
-	std::vector<std::vector<Index>> loops = faceLoopsOf(quad);
-	for (std::vector<Index>& loop : loops)
-		std::reverse(loop.begin(), loop.end());
-	quad.faces = NeighborLists::fromRows(loops);
-	onFeature.assign(quad.vertexCount(), 0);
-	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, quad, onFeature), 0);
+// A floor of quads, and a ceiling that looks down to it or a cellar: other sheets, however near. A plateau is not.
+TEST(FaceCaps, PointsOfAnotherSheetAreLeftAlone)
+{
+	samples::SampleRequest request;
+	request.surface             = "plane";
+	request.points              = 2000;
+	samples::SampleCloud sample = samples::generate(request);
+	const double         edge   = 0.2;
+	for (const double height : {0.16, -0.16})
+		for (const double side : {1.0, -1.0}) {
+			SCOPED_TRACE(testing::Message() << height << " " << side);
+			for (Index i = 0; i < 2000; ++i) {
+				const Vector3d p       = sample.positions.col(i);
+				const bool     other   = std::max(std::abs(p.x()), std::abs(p.y())) < 0.4 * edge;
+				sample.positions(2, i) = other ? height : 0.0;
+				sample.normals.col(i)  = (other ? side : 1.0) * Vector3d::UnitZ();
+				sample.d2.col(i)       = sample.normals.col(i).cross(sample.d1.col(i));
+			}
+			const ExactCloud                exact = exactCloud(sample);
+			std::vector<Vector3d>           vertices;
+			std::vector<std::vector<Index>> faces;
+			for (int j = 0; j <= 5; ++j)
+				for (int i = 0; i <= 5; ++i)
+					vertices.emplace_back(edge * i - 0.5, edge * j - 0.5, 0.0);
+			for (Index j = 0; j < 5; ++j)
+				for (Index i = 0; i < 5; ++i)
+					faces.push_back({6 * j + i, 6 * j + i + 1, 6 * j + i + 7, 6 * j + i + 6});
+			PolygonMesh mesh = polygonMesh(
+				vertices, std::vector<Vector3d>(vertices.size(), Vector3d::UnitZ()), faces);
+			std::vector<char> onFeature(mesh.vertexCount(), 0);
+			EXPECT_EQ(
+				capBulgingFaces(exact.cloud, exact.field, bulge, mesh, onFeature),
+				height > 0.0 && side > 0.0 ? 1 : 0);
+		}
 }
 
 TEST(FaceCaps, GrowWithTheSurface)
@@ -251,8 +281,8 @@ TEST(FaceCaps, GrowWithTheSurface)
 	PolygonMesh a = cone.cutAt(2.0, 4, 6), b = a;
 	b.vertices *= 64.0;
 	std::vector<char> onA(a.vertexCount(), 0), onB = onA;
-	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, a, onA), 1);
-	EXPECT_EQ(capBulgingFaces(large.cloud, large.field, b, onB), 1);
+	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, a, onA), 1);
+	EXPECT_EQ(capBulgingFaces(large.cloud, large.field, bulge, b, onB), 1);
 	ASSERT_EQ(a.vertexCount(), b.vertexCount());
 	EXPECT_EQ(a.faces.indices, b.faces.indices);
 	EXPECT_LT((b.vertices / 64.0 - a.vertices).cwiseAbs().maxCoeff(), 1e-9);
@@ -268,7 +298,7 @@ TEST(FaceCaps, AreTheSameForAnyNumberOfThreads)
 		omp_set_num_threads(1 + 2 * k);
 		meshes[k] = cone.cutAt(2.0, 4, 6);
 		std::vector<char> onFeature(meshes[k].vertexCount(), 0);
-		EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, meshes[k], onFeature), 1);
+		EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, meshes[k], onFeature), 1);
 	}
 	omp_set_num_threads(threads);
 	EXPECT_EQ(meshes[0].vertices, meshes[1].vertices);
@@ -281,12 +311,12 @@ TEST(FaceCaps, DegenerateMeshesAreNoProblem)
 	const ExactCloud  exact = Cone{3.0}.cloud(500);
 	PolygonMesh       none;
 	std::vector<char> onFeature;
-	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, none, onFeature), 0);
+	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, none, onFeature), 0);
 	const std::vector<Vector3d> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
 	PolygonMesh                 flat =
 		polygonMesh(line, std::vector<Vector3d>(4, Vector3d::UnitZ()), {{0, 1, 2, 3}});
 	onFeature.assign(4, 0);
-	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, flat, onFeature), 0);
+	EXPECT_EQ(capBulgingFaces(exact.cloud, exact.field, bulge, flat, onFeature), 0);
 	EXPECT_EQ(flat.vertexCount(), 4);
 }
 

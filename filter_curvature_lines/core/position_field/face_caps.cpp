@@ -30,8 +30,9 @@ constexpr Index  largestFace = 6; // sides
 // Cosine between the way to such a point and the face's normal, at least; and faces nearby that are asked.
 constexpr double facing     = 0.5;
 constexpr Index  facesAsked = 16;
-// Cosine between the normals of point and face below which the point is on another sheet.
-constexpr double opposing = -0.3;
+// Where all these points look back at the face (cosine between the normals, at most) they are on another sheet. Around a
+// tip normals point to all sides, and a single point may be all there is.
+constexpr double opposing = -0.8;
 // The last ring is at one of these shares of the way to the apex: the first that leaves it so near, in mean edges.
 constexpr double lastRings[] = {0.5, 0.65, 0.8, 0.9};
 constexpr double apexLeft    = 0.15;
@@ -130,6 +131,7 @@ private:
 	{
 		const Eigen::Matrix3Xd& points = m_index.cloud().positions;
 		const MeshDistance      found  = distanceToMesh(m_mesh, points);
+		std::vector<char> agrees(m_mesh.faceCount(), 0);
 		for (Index i = 0; i < m_index.size(); ++i) {
 			const Index f = faceBelow(i, found);
 			if (f < 0)
@@ -137,7 +139,12 @@ private:
 			if (found.distance[i] >= m_bulge * m_shapes[f].edge &&
 			    (m_apex[f] < 0 || found.distance[i] > found.distance[m_apex[f]]))
 				m_apex[f] = i;
+			if (m_index.cloud().normals.col(i).dot(m_shapes[f].normal) > opposing)
+				agrees[f] = 1;
 		}
+		for (Index f = 0; f < m_mesh.faceCount(); ++f)
+			if (!agrees[f])
+				m_apex[f] = -1;
 	}
 
 	// The face that point i is above; -1: none, or not far.
@@ -170,10 +177,7 @@ private:
 		else if (share < tall && distanceToSides(m_mesh, f, foot) < besideSide * nearest.edge) {
 			return -1;
 		}
-		if (f < 0 || m_mesh.faces[f].size() > largestFace)
-			return -1;
-		const Vector3d normal = m_index.cloud().normals.col(i);
-		return normal.dot(m_shapes[f].normal) > opposing ? f : -1;
+		return f >= 0 && m_mesh.faces[f].size() <= largestFace ? f : -1;
 	}
 
 	// Between the corners of face f and the apex, on the surface.

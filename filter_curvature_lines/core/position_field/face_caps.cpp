@@ -131,7 +131,7 @@ private:
 	{
 		const Eigen::Matrix3Xd& points = m_index.cloud().positions;
 		const MeshDistance      found  = distanceToMesh(m_mesh, points);
-		std::vector<char> agrees(m_mesh.faceCount(), 0);
+		std::vector<char>       agrees(m_mesh.faceCount(), 0);
 		for (Index i = 0; i < m_index.size(); ++i) {
 			const Index f = faceBelow(i, found);
 			if (f < 0)

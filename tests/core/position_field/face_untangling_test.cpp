@@ -1,0 +1,149 @@
+// Meshes with vertices pulled over their neighbours: untangled on the surface, all the rest as it was.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "face_untangling.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "analytic_surfaces.h"
+#include "exact_field.h"
+#include "mesh_quality.h"
+#include "point_cloud.h"
+#include "polygon_mesh.h"
+
+namespace curvature_lines::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr Index around = 40, tube = 20;
+
+ExactCloud torusCloud()
+{
+	samples::SampleRequest request;
+	request.surface = "torus";
+	request.points  = 5000;
+	request.seed    = 2;
+	return exactCloud(request);
+}
+
+// Quads along the lines of curvature.
+PolygonMesh torusMesh()
+{
+	std::vector<Vector3d>           vertices, normals;
+	std::vector<std::vector<Index>> faces;
+	for (Index j = 0; j < tube; ++j)
+		for (Index i = 0; i < around; ++i) {
+			const double   a = 2.0 * EIGEN_PI * i / around, b = 2.0 * EIGEN_PI * j / tube;
+			const Vector3d out(std::cos(a), std::sin(a), 0.0);
+			normals.push_back(std::cos(b) * out + std::sin(b) * Vector3d::UnitZ());
+			vertices.push_back(out + 0.4 * normals.back());
+			const Index right = (i + 1) % around, up = (j + 1) % tube;
+			faces.push_back(
+				{j * around + i, j * around + right, up * around + right, up * around + i});
+		}
+	return polygonMesh(vertices, normals, faces);
+}
+
+Index unsoundFaces(const PolygonMesh& mesh)
+{
+	Index count = 0;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		count += scaledJacobian(mesh, f) < 0.1;
+	return count;
+}
+
+// Each on the place of the vertex after the next one around, so that faces turn over.
+PolygonMesh tangled(const std::vector<Index>& which)
+{
+	PolygonMesh mesh = torusMesh();
+	for (const Index v : which) {
+		const Index other    = v - v % around + (v + 1) % around;
+		mesh.vertices.col(v) = mesh.vertices.col(other) +
+		                       0.4 * (mesh.vertices.col(other) - torusMesh().vertices.col(v));
+	}
+	return mesh;
+}
+
+TEST(FaceUntangling, TurnsFacesBackOnTheSurface)
+{
+	const ExactCloud                exact   = torusCloud();
+	const std::vector<Index>        which   = {45, 210, 333, 555, 700};
+	const PolygonMesh               before  = tangled(which);
+	const samples::AnalyticSurface& surface = samples::surface("torus");
+	PolygonMesh                     mesh    = before;
+	ASSERT_GE(unsoundFaces(mesh), 10);
+	EXPECT_EQ(
+		untangleFaces(exact.cloud, exact.field, std::vector<char>(mesh.vertexCount(), 0), mesh), 0);
+	EXPECT_EQ(unsoundFaces(mesh), 0);
+	EXPECT_EQ(foldedFaces(mesh), 0);
+	EXPECT_EQ(mesh.faces.indices, before.faces.indices);
+	Index moved = 0;
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
+		moved += mesh.vertices.col(v) != before.vertices.col(v);
+		EXPECT_NEAR(mesh.normals.col(v).norm(), 1.0, 1e-9);
+		EXPECT_LT((mesh.vertices.col(v) - surface.project(mesh.vertices.col(v))).norm(), 0.01);
+	}
+	EXPECT_GE(moved, 5);
+	EXPECT_LE(moved, 8 * 5); // corners of unsound faces at most
+}
+
+TEST(FaceUntangling, SoundMeshesAndFixedVerticesStay)
+{
+	const ExactCloud  exact = torusCloud();
+	const PolygonMesh sound = torusMesh();
+	PolygonMesh       mesh  = sound;
+	std::vector<char> fixed(mesh.vertexCount(), 0);
+	EXPECT_EQ(untangleFaces(exact.cloud, exact.field, fixed, mesh), 0);
+	EXPECT_EQ(mesh.vertices, sound.vertices);
+	EXPECT_EQ(mesh.normals, sound.normals);
+
+	const PolygonMesh before = tangled({210, 555});
+	mesh                     = before;
+	fixed.assign(mesh.vertexCount(), 1);
+	EXPECT_EQ(untangleFaces(exact.cloud, exact.field, fixed, mesh), unsoundFaces(before));
+	EXPECT_EQ(mesh.vertices, before.vertices);
+	// One of the two may move, or its neighbours.
+	fixed.assign(mesh.vertexCount(), 0);
+	fixed[210] = 1;
+	untangleFaces(exact.cloud, exact.field, fixed, mesh);
+	EXPECT_EQ(mesh.vertices.col(210), before.vertices.col(210));
+	EXPECT_NE(mesh.vertices.col(555), before.vertices.col(555));
+}
+
+// It never makes a face unsound that was not, and counts what it leaves.
+TEST(FaceUntangling, MakesNothingWorse)
+{
+	const ExactCloud exact = torusCloud();
+	for (const int seed : {1, 2, 3}) {
+		samples::Random random(seed, 0);
+		PolygonMesh     mesh = torusMesh();
+		for (Index v = 0; v < mesh.vertexCount(); ++v)
+			if (random.uniform() < 0.2) {
+				const Vector3d step = random.normal3();
+				mesh.vertices.col(v) +=
+					0.15 * (step - step.dot(mesh.normals.col(v)) * mesh.normals.col(v));
+			}
+		const Index before = unsoundFaces(mesh);
+		const Index left =
+			untangleFaces(exact.cloud, exact.field, std::vector<char>(mesh.vertexCount(), 0), mesh);
+		EXPECT_GT(before, 50);
+		EXPECT_EQ(left, unsoundFaces(mesh));
+		EXPECT_LT(left, before / 10);
+		EXPECT_TRUE(mesh.vertices.allFinite());
+	}
+}
+
+TEST(FaceUntangling, NothingStaysNothing)
+{
+	const ExactCloud exact = torusCloud();
+	PolygonMesh      none;
+	EXPECT_EQ(untangleFaces(exact.cloud, exact.field, {}, none), 0);
+	EXPECT_EQ(none.vertexCount(), 0);
+}
+
+} // namespace
+} // namespace curvature_lines::test

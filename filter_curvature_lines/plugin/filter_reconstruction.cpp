@@ -193,7 +193,7 @@ void reportLosses(
 			std::to_string(result.coverage.uncovered) +
 			" points that were kept are farther than two edges from the mesh (uncovered_share). "
 			"Raise 'target_vertices', or check the cloud there: it may be too sparse for a "
-		    "surface.");
+			"surface.");
 	if (result.foldedFaces > 0)
 		results.warn(
 			std::to_string(result.foldedFaces) +

@@ -44,6 +44,7 @@ namespace {
 // promised for it.
 constexpr double countTolerance = 0.03;
 
+constexpr Index fewestPoints = 4;
 // Projections of a vertex on a rim.
 constexpr int rimSteps = 2;
 // A limb whose end the mesh misses by far may need a cap on a cap.
@@ -178,9 +179,11 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	const Progress&                 progress)
 {
 	PositionFieldMeshResult result;
-	ScaffoldOptions         forScaffold = options.scaffold;
-	forScaffold.noise                   = options.noise;
-	forScaffold.closedRim               = options.mesh.closeHoles ? longestClosedHole : 0.0;
+	if (index.size() < fewestPoints)
+		return result;
+	ScaffoldOptions forScaffold = options.scaffold;
+	forScaffold.noise           = options.noise;
+	forScaffold.closedRim       = options.mesh.closeHoles ? longestClosedHole : 0.0;
 	// A front over points that keep their noise folds, and lines on it turn back and cross.
 	const CloudIndex fitted =
 		curvature.height.size() > 0 ? onFittedSurface(index.cloud(), curvature) : index;

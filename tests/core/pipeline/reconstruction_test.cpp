@@ -229,7 +229,7 @@ TEST(Reconstruction, DensityFollowsTheCloudUnlessGiven)
 	options.tracing.targetVertices = 0;
 	options.tracing.epsilon        = 0.02;
 	const double coarse            = vertices();
-	options.tracing.epsilon        = 0.004;
+	options.tracing.epsilon        = 0.001; // both above what goes around the tube at least
 	EXPECT_LT(coarse, vertices());
 	options.method = Method::TracedLines;
 	EXPECT_LT(coarse, vertices());

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "cloud_index.h"
 #include "exact_field.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
@@ -270,6 +271,34 @@ TEST(SurfaceProjection, AlwaysFinite)
 		      Vector3d(exact.cloud.positions.col(9)),
 		      Vector3d(5.0, -7.0, 3.0)})
 			expectFiniteFrame(projectToSurface(exact.cloud, exact.field, query, 9, kind));
+}
+
+// Two sheets a tenth of a spacing apart that look away from each other.
+TEST(ClosestOnSide, IsTheNearestWhoseNormalAgrees)
+{
+	samples::Random random(3, 0);
+	PointCloud      cloud;
+	cloud.positions.resize(3, 400);
+	cloud.normals.resize(3, 400);
+	for (Index i = 0; i < 400; ++i) {
+		const double side = i % 2 == 0 ? 1.0 : -1.0;
+		cloud.positions.col(i) << random.uniform(), random.uniform(), 0.0025 * side;
+		cloud.normals.col(i) << 0.0, 0.0, side;
+	}
+	const CloudIndex index(cloud);
+	for (int k = 0; k < 200; ++k) {
+		const Vector3d p(random.uniform(), random.uniform(), random.uniform(-0.02, 0.02));
+		const Vector3d normal(0.1, 0.0, k % 2 == 0 ? 1.0 : -1.0);
+		Index          expected = -1;
+		for (Index i = 0; i < 400; ++i)
+			if (cloud.normals.col(i).dot(normal) > 0.0 &&
+			    (expected < 0 ||
+			     (cloud.positions.col(i) - p).norm() < (cloud.positions.col(expected) - p).norm()))
+				expected = i;
+		EXPECT_EQ(closestOnSide(index, p, normal), expected);
+		// No normal agrees: the nearest of all.
+		EXPECT_EQ(closestOnSide(index, p, Vector3d::UnitX()), index.search().nearest(p, 1)[0]);
+	}
 }
 
 } // namespace

@@ -167,6 +167,26 @@ TEST(LineDensity, FollowsTheSizesOfTheScaffold)
 	EXPECT_LT(even.maxCoeff() / even.minCoeff(), 1.0 + 1e-6);
 }
 
+// Around the tube of a torus lines have to be as many inside as outside, and get farther apart outside; half of it is a limb.
+TEST(LineDensity, LinesOnLimbsDoNotMoveApart)
+{
+	CrossedSurface     torus = test::crossed(test::triangulatedTorus(60, 30));
+	LineDensityOptions options;
+	options.targetVertices  = 600;
+	options.anisotropy      = 1.0;
+	const LineDensity free  = lineDensity(torus.scaffold, torus.field, torus.curvature, options);
+	const Index       count = torus.surface.size();
+	torus.scaffold.onLimb.assign(count, 0);
+	EXPECT_EQ(lineDensity(torus.scaffold, torus.field, torus.curvature, options), free);
+	torus.scaffold.onLimb.assign(count, 1);
+	const LineDensity bound = lineDensity(torus.scaffold, torus.field, torus.curvature, options);
+	EXPECT_GT(free.maxCoeff() / free.minCoeff(), 1.8);
+	// The least is .87 of what the sizes ask for, which the most, twice that, may exceed.
+	EXPECT_LT(bound.maxCoeff() / bound.minCoeff(), 2.0 * 1.15 + 1e-9);
+	EXPECT_GT(bound.minCoeff() / bound.maxCoeff(), free.minCoeff() / free.maxCoeff() * 1.1);
+	EXPECT_NEAR(expectedVertices(torus.surface.mesh, torus.field, bound), 600, 1e-3);
+}
+
 TEST(ExpectedRise, IsTheNumberOfLinesAnEdgeCrosses)
 {
 	const CrossedSurface plane = test::crossed(test::triangulatedPlane(10, 0.3));

@@ -279,7 +279,7 @@ TEST(SizingField, BendsAreNotCutByChords)
 	shape.curvature.error.setConstant(0.5);
 	EXPECT_NEAR(sizesOf(shape, options).feature.minCoeff(), 0.07 / 0.9, 1e-9);
 	// An estimate in ten is wrong.
-	options.targetVertices = 400.0;
+	options.targetVertices = 250; // as far as features do not give way
 	shape.curvature.error.setZero();
 	samples::Random random(2, 0);
 	for (Index i = 0; i < shape.size(); ++i)
@@ -350,6 +350,29 @@ TEST(SizingField, FeaturesGiveWayDownToFourEdgesAround)
 		before = next[next.size() / 2];
 	}
 	EXPECT_NEAR(before, 2 * EIGEN_PI * radius / 6, 0.05 * radius);
+}
+
+// Bends give way further than limbs do: to four times, where a limb keeps its four edges around.
+TEST(SizingField, BendsGiveWayFurtherThanLimbs)
+{
+	const double radius = 0.05;
+	Shape        limb   = rod(radius, 4.0, 6000);
+	Shape        wavy   = sampled("sphere", 8000);
+	wavy.curvature.k1.setConstant(20.0); // asks for edges of .035
+	wavy.curvature.k2.setConstant(20.0);
+	const Shape       shape  = together(limb, wavy, {3, 0, 0});
+	const SizingField sizing = sizesOf(shape, optionsFor(1000));
+	std::vector<char> onSphere(shape.size(), 0);
+	std::fill(onSphere.begin() + 6000, onSphere.end(), char(1));
+	const auto onBend = valuesWhere(sizing.size(), onSphere);
+	EXPECT_NEAR(
+		valuesWhere(sizing.size().head(6000), onShaft(limb, 1.8))[2000],
+		2 * EIGEN_PI * radius / 4,
+		0.1 * radius);
+	EXPECT_GT(onBend[4000], 3.0 * 0.035);
+	EXPECT_LE(onBend.back(), 4.0 * 0.035 * (1.0 + 1e-9));
+	EXPECT_GT(sizing.expected, 999.0);
+	EXPECT_LT(sizing.expected, 1100.0);
 }
 
 TEST(SizingField, GrowsWithTheSurface)

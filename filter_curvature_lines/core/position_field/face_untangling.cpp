@@ -25,6 +25,9 @@ using Eigen::Vector3d;
 // Faces below this scaled Jacobian are unsound: with a corner of more than 174 degrees, or turned over.
 constexpr double sound  = 0.1;
 constexpr int    rounds = 8;
+// Of the worst scaled Jacobian around a vertex that moves: more than rounding, which would follow the order of the points
+// where the worst corner is one that the move leaves alone.
+constexpr double leastGain = 1e-3;
 // Shares of the way to the mean of the neighbours that are tried.
 constexpr double shares[] = {1.0, 0.5, 0.25};
 
@@ -107,7 +110,7 @@ private:
 				ProjectionKind::Mixed);
 			m_mesh.vertices.col(v) = sample.position;
 			m_mesh.normals.col(v)  = sample.normal;
-			if (worstAround(v) > before)
+			if (worstAround(v) > before + leastGain)
 				return true;
 		}
 		m_mesh.vertices.col(v) = position;

@@ -24,9 +24,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The foot of such a point lies inside the face: not so near to its sides, in mean edges, unless the point is this high.
+// The foot of such a point lies inside the face: not so near to its sides, in mean edges. A point this high is above the
+// face nearby that faces it most.
 constexpr double besideSide = 0.05, tall = 0.7;
-constexpr Index  largestFace = 6; // sides
+constexpr double farthest =
+	5.0; // mean edges; beyond, something else is missing than the end of a limb
+constexpr Index largestFace = 6; // sides
 // Cosine between the way to such a point and the face's normal, at least; and faces nearby that are asked.
 constexpr double facing     = 0.5;
 constexpr Index  facesAsked = 16;
@@ -152,32 +155,32 @@ private:
 	{
 		if (found.face[i] < 0) // no face has an area
 			return -1;
-		const FaceShape& nearest = m_shapes[found.face[i]];
-		const double     share   = found.distance[i] / nearest.edge;
-		if (share < 0.5 * m_bulge)
+		const Vector3d p     = m_index.cloud().positions.col(i);
+		const Vector3d foot  = found.foot.col(i);
+		const auto     rises = [&](Index f, double edges) {
+            return found.distance[i] >= edges * m_shapes[f].edge &&
+                   m_mesh.faces[f].size() <= largestFace;
+		};
+		const Index      nearest = found.face[i];
+		const FaceShape& shape   = m_shapes[nearest];
+		if ((p - foot).dot(shape.normal) >= facing * found.distance[i] &&
+		    distanceToSides(m_mesh, nearest, foot) >= besideSide * shape.edge)
+			return rises(nearest, 0.5 * m_bulge) ? nearest : -1;
+		// Beside the end of a limb the nearest face is one of its sides; and of the faces beside an edge, which one is the
+		// nearest is a matter of rounding.
+		double best = facing;
+		Index  f    = -1;
+		if (!rises(nearest, 0.5 * tall))
 			return -1;
-		const Vector3d p    = m_index.cloud().positions.col(i);
-		const Vector3d foot = found.foot.col(i);
-		Index          f    = found.face[i];
-		if ((p - foot).dot(nearest.normal) < facing * found.distance[i]) {
-			// Beside the end of a limb the nearest face is one of its sides.
-			if (share < tall)
-				return -1;
-			double best = facing;
-			f           = -1;
-			for (const Index other : m_centers.nearest(foot, facesAsked)) {
-				const Vector3d way    = p - m_shapes[other].center;
-				const double   cosine = way.normalized().dot(m_shapes[other].normal);
-				if (cosine > best) {
-					best = cosine;
-					f    = other;
-				}
+		for (const Index other : m_centers.nearest(foot, facesAsked)) {
+			const Vector3d way    = p - m_shapes[other].center;
+			const double   cosine = way.normalized().dot(m_shapes[other].normal);
+			if (cosine > best && found.distance[i] < farthest * m_shapes[other].edge) {
+				best = cosine;
+				f    = other;
 			}
 		}
-		else if (share < tall && distanceToSides(m_mesh, f, foot) < besideSide * nearest.edge) {
-			return -1;
-		}
-		return f >= 0 && m_mesh.faces[f].size() <= largestFace ? f : -1;
+		return f >= 0 && rises(f, tall) ? f : -1;
 	}
 
 	// Between the corners of face f and the apex, on the surface.

@@ -215,6 +215,27 @@ TEST(SizingField, MoreEdgesAroundForTheAsking)
 	EXPECT_NEAR(size[size.size() / 2], 2 * EIGEN_PI * radius / 9, 0.02 * radius);
 }
 
+// Noise of a fifth of a spacing, a twentieth of the radius, puts neighbours inside the balls: less than half of the points know
+// that they are on a limb, but those next to them do.
+TEST(SizingField, ANoisyRodGetsItsEdgesAround)
+{
+	const double radius = 0.05;
+	for (const double tilt : {0.0, 0.1}) { // of the normals, radians
+		Shape           shape = rod(radius, 2.0, 4000);
+		samples::Random random(5, 0);
+		for (Index i = 0; i < shape.size(); ++i) {
+			const Vector3d normal = shape.cloud.normals.col(i);
+			shape.cloud.positions.col(i) += 0.05 * radius * random.normal() * normal;
+			shape.cloud.normals.col(i) = (normal + tilt * random.normal3()).normalized();
+		}
+		const SizingField sizing = sizesOf(shape, optionsFor(160, true));
+		const auto        size   = valuesWhere(sizing.size(), onShaft(shape, 0.9));
+		EXPECT_NEAR(size[size.size() / 2], 2 * EIGEN_PI * radius / 6, 0.06 * radius) << tilt;
+		EXPECT_LT(size.back(), 2 * EIGEN_PI * radius / 4) << tilt;
+		EXPECT_GT(sizing.body, 1.3 * radius);
+	}
+}
+
 TEST(SizingField, ThickShapesAskForNothing)
 {
 	for (const char* name : {"sphere", "cube", "torus", "ellipsoid"}) {

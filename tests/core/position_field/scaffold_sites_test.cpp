@@ -278,6 +278,19 @@ TEST(ScaffoldSites, CreasesAreSampledAsFinelyAsTheirPlaceAsks)
 			EXPECT_NEAR(length, 0.93 * 0.08, 0.008);
 		}
 	}
+	// And points keep as far from them as their own place asks.
+	const Index first = fromCloud(sites);
+	Index       near  = 0;
+	for (Index a = 0; a < first; ++a) {
+		const double away =
+			(sites.points.rightCols(sites.size() - first).colwise() - sites.points.col(a))
+				.colwise()
+				.norm()
+				.minCoeff();
+		EXPECT_GE(away, clearance[sites.place[a]]);
+		near += away < 0.05;
+	}
+	EXPECT_GT(near, 20);
 }
 
 } // namespace

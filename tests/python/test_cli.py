@@ -82,3 +82,14 @@ def test_how_far_points_moved():
     cleaned = next(mesh for mesh in meshes if mesh.label() == "cleaned cloud")
     moved = cleaned.vertex_custom_scalar_attribute_array("moved")
     assert np.sqrt(np.mean(moved**2)) == pytest.approx(report["moved_rms"], rel=1e-6)
+
+
+def test_what_the_mesh_does_not_show_is_told():
+    from pymeshlab_curvature_lines.pipeline import Reconstruction
+
+    counts = {"uncovered_share": 0.02, "folded_faces": 3, "dropped_components": 2}
+    told = Reconstruction(pymeshlab.MeshSet(), 0, None, 1, counts, {}).losses()
+    assert [re.match(r"[\d.]+", sentence)[0] for sentence in told] == ["2", "3", "2"]
+    assert all("target vertices" in sentence for sentence in told)
+    nothing = dict.fromkeys(counts, 0)
+    assert Reconstruction(pymeshlab.MeshSet(), 0, None, 1, nothing, {}).losses() == []

@@ -46,7 +46,14 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
     known = {name for each in filters for name in (each, *meshes.filter_parameter_values(each))}
     known |= {*ATTRIBUTES, "line_id", "line_family", "line_closed", "line_arc_length", "moved"}
     known |= {"debootstrap", "libgl1", "libopengl0"}
-    known |= {"uncovered_share", "largest_gap", "folded_faces", "limb_vertices", "dropped_components", "warnings"}  # returned
+    known |= {
+        "uncovered_share",
+        "largest_gap",
+        "folded_faces",
+        "limb_vertices",
+        "dropped_components",
+        "warnings",
+    }  # returned
     for page in PAGES:
         prose = re.sub(r"^```.*?^```", "", (CHECKOUT / page).read_text(), flags=re.MULTILINE | re.DOTALL)
         named = set(re.findall(r"`([a-z_]+\d?)`", prose))

@@ -388,6 +388,39 @@ def test_pipeline_topology(surface, points, euler, rims):
     assert report["creases"] == (12 if surface == "cube" else 0)
 
 
+def rod_on_a_ball(points, radius):
+    """A ball of radius 1 with a rod of length 1 on top, evenly sampled; outward normals."""
+    random = np.random.default_rng(5)
+    ball, shaft = 4 * np.pi, 2 * np.pi * radius
+    share = random.random(points) * (ball + shaft) < ball
+    outward = random.normal(size=(points, 3))
+    outward /= np.linalg.norm(outward, axis=1)[:, None]
+    angle, height = random.uniform(0, 2 * np.pi, points), random.uniform(1, 2, points)
+    around = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(points)])
+    positions = np.where(share[:, None], outward, radius * around + np.outer(height, [0, 0, 1]))
+    normals = np.where(share[:, None], outward, around)
+    outside = ~share | (np.hypot(outward[:, 0], outward[:, 1]) > radius) | (outward[:, 2] < 0)
+    return positions[outside], normals[outside]
+
+
+def test_pipeline_meshes_a_rod_and_tells_what_is_missing():
+    positions, normals = rod_on_a_ball(8000, 0.08)
+    meshes = layer(positions, normals)
+    report = check_report(
+        meshes.apply_filter(PIPELINE, target_vertices=60, **QUICK),
+        *("uncovered_share", "largest_gap", "folded_faces", "limb_vertices", "warnings", "caps"),
+    )
+    # Four edges around the rod and no fewer: more than sixty vertices, and told.
+    assert report["limb_vertices"] > 20 and report["vertices"] > 80
+    assert report["uncovered_share"] < 0.001 and report["largest_gap"] < 0.1
+    # The rod is open at its end.
+    mesh = meshes.current_mesh()
+    assert mesh.vertex_matrix()[:, 2].max() > 1.9
+    # Nothing of the kind of a shape that asks for nothing.
+    calm = layer_of(generate("sphere", 3000, seed=6)).apply_filter(PIPELINE, target_vertices=300, **QUICK)
+    assert calm["limb_vertices"] == calm["folded_faces"] == calm["warnings"] == calm["uncovered_share"] == 0
+
+
 def test_pipeline_on_a_grid_is_the_same_every_time():
     """Where all triangles are equally good nothing but the points may decide."""
     u, v = (a.ravel() for a in np.meshgrid(np.arange(200) * np.pi / 100, np.arange(100) * np.pi / 50, indexing="ij"))

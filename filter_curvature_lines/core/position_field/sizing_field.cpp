@@ -47,7 +47,9 @@ constexpr double limbReach = 3.0, limbEigenvalue = 0.25;
 constexpr double limbPoints = 96.0;
 // Edges are no shorter than the spacing of the points, on limbs than this share of it.
 constexpr double shortestOnLimb = 0.5;
-// Links of neighbours are shorter than so many spacings; components have at least so many points.
+// Points of a component are linked to so many around them, whatever their normals, which may be wrong. Links are shorter
+// than so many spacings; components have at least so many points.
+constexpr Index  linked            = 6;
 constexpr double longestLink       = 3.0;
 constexpr Index  fewestInComponent = 12;
 // Vertices over the target beyond which features get coarser: one that nobody asked for, and one that somebody did.
@@ -155,7 +157,7 @@ private:
 	{
 		DisjointSets sets(m_count);
 		for (Index i = 0; i < m_count; ++i)
-			for (const Index j : m_minimum.neighbors[i])
+			for (const Index j : m_search.nearest(m_cloud.positions.col(i), linked + 1))
 				if ((m_cloud.positions.col(i) - m_cloud.positions.col(j)).norm() <
 				    longestLink * m_spacing[i])
 					sets.join(i, j);

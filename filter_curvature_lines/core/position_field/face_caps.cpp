@@ -68,6 +68,7 @@ FaceShape shapeOf(const PolygonMesh& mesh, Index f)
 std::vector<FaceShape> shapesOf(const PolygonMesh& mesh)
 {
 	std::vector<FaceShape> shapes;
+	shapes.reserve(mesh.faceCount());
 	for (Index f = 0; f < mesh.faceCount(); ++f)
 		shapes.push_back(shapeOf(mesh, f));
 	return shapes;

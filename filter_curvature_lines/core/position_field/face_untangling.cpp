@@ -11,7 +11,6 @@
 #include "cloud_index.h"
 #include "curvature_field.h"
 #include "mesh_quality.h"
-#include "neighborhoods.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
 #include "surface_projection.h"

@@ -3,7 +3,6 @@
 #include "scaffold_refinement.h"
 
 #include <array>
-#include <cstddef>
 #include <utility>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include "sizing_field.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>

@@ -10,7 +10,6 @@
 #include "cloud_index.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
-#include "polygon_mesh.h"
 #include "scaffold_sites.h"
 #include "sizing_field.h"
 

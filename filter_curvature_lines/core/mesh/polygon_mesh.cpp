@@ -149,6 +149,7 @@ PolygonMesh polygonMesh(
 std::vector<std::vector<Index>> faceLoopsOf(const PolygonMesh& mesh)
 {
 	std::vector<std::vector<Index>> faces;
+	faces.reserve(mesh.faceCount());
 	for (Index f = 0; f < mesh.faceCount(); ++f)
 		faces.emplace_back(mesh.faces[f].begin(), mesh.faces[f].end());
 	return faces;

@@ -31,6 +31,7 @@ Polygons::Polygons(const HalfEdgeGraph& graph, const std::vector<std::vector<Ind
 	}
 	for (const std::vector<Index>& loop : faceLoops) {
 		std::vector<Index> border;
+		border.reserve(loop.size());
 		for (const Index h : loop)
 			border.push_back(graph.origin(h));
 		addDisk(border);

@@ -27,7 +27,6 @@
 #include "point_cloud.h"
 #include "position_field_mesh.h"
 #include "progress.h"
-#include "scaffold.h"
 #include "scaffold_sites.h"
 #include "umbilics.h"
 #include "voronoi_cells.h"
@@ -151,6 +150,7 @@ NoisyPoints thinned(NoisyPoints points, double most, const Progress& progress)
 		return points;
 	const std::vector<Index> sample = evenSample(points.index, static_cast<Index>(most), progress);
 	std::vector<Index>       kept;
+	kept.reserve(sample.size());
 	for (const Index k : sample)
 		kept.push_back(points.kept[k]);
 	points.kept  = std::move(kept);

@@ -307,7 +307,7 @@ std::optional<RayTracer::Elevation> RayTracer::elevationAt(
 {
 	const Vector3d place   = ray.origin + t * ray.direction;
 	const Passage& closest = closestTo(t, passages);
-	const auto     first   = elevationOver(closest.sphere, place, memory);
+	auto           first   = elevationOver(closest.sphere, place, memory);
 	if (!first || std::abs(first->above) > far * first->spacing)
 		return first;
 	const double least = std::sqrt(closest.squaredDistance(t)),

@@ -153,8 +153,12 @@ void recoverCreaseEdges(
 		if (mesh.edgeBetween(a, b) >= 0)
 			continue;
 		std::vector<Triangle> flipped = triangles;
-		if (joinByFlips(points, a, b, edges, flipped) ||
-		    joinByFlips(points, b, a, edges, flipped = triangles))
+		bool                  joined  = joinByFlips(points, a, b, edges, flipped);
+		if (!joined) {
+			flipped = triangles;
+			joined  = joinByFlips(points, b, a, edges, flipped);
+		}
+		if (joined)
 			triangles = std::move(flipped);
 	}
 }

@@ -353,7 +353,8 @@ private:
 	// one: the front turned around a void.
 	std::optional<Vector3d> fittedCorner(const Rim& rim, Index k) const
 	{
-		const Vector3d start = position(rim, k), normal = m_normals.col(rim.at(k));
+		Vector3d       start  = position(rim, k);
+		const Vector3d normal = m_normals.col(rim.at(k));
 		Vector3d       p[2], d[2];
 		for (const Index side : {0, 1}) {
 			View view(

@@ -33,6 +33,7 @@ std::vector<EdgePoint> pointsOn(const Complex& start, const Complex& end)
 	}
 	std::sort(found.begin(), found.end());
 	std::vector<EdgePoint> points;
+	points.reserve(found.size());
 	for (const auto& [t, family, q] : found)
 		points.push_back({t, family});
 	return points;

@@ -2,6 +2,7 @@
 // the objective fails.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <utility>

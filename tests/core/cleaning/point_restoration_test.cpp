@@ -12,6 +12,8 @@
 
 #include "analytic_surfaces.h"
 #include "neighborhoods.h"
+#include "outlier_ballot.h"
+#include "outlier_voter.h"
 #include "point_cloud.h"
 #include "rejected_points.h"
 #include "thin_shapes.h"

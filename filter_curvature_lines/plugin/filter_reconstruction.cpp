@@ -164,6 +164,7 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 	results.count("dropped_components", result.mesh.droppedComponents);
 	results.count("repaired_components", result.mesh.repairedComponents);
 	results.count("caps", result.mesh.caps);
+	results.count("unsound_faces", result.mesh.unsoundFaces);
 	results.count(
 		"umbilic",
 		std::count(result.umbilics.umbilic.begin(), result.umbilics.umbilic.end(), char(1)));

@@ -24,12 +24,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The foot of such a point lies inside the face: not so near to its sides, in mean edges. A point this high is above the
-// face nearby that faces it most.
-constexpr double besideSide = 0.05, tall = 0.7;
-constexpr double farthest =
-	5.0; // mean edges; beyond, something else is missing than the end of a limb
-constexpr Index largestFace = 6; // sides
+// In mean edges of a face. The foot of a point above it lies inside: not so near to its sides. A point as high as `tall` is
+// above the face nearby that faces it most; one beyond `farthest` tells that something else is missing than the end of a limb.
+constexpr double besideSide = 0.05, tall = 0.7, farthest = 5.0;
+constexpr Index  largestFace = 6; // sides
 // Cosine between the way to such a point and the face's normal, at least; and faces nearby that are asked.
 constexpr double facing     = 0.5;
 constexpr Index  facesAsked = 16;

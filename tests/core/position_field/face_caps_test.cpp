@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,7 +18,6 @@
 #include "neighborhoods.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
-#include "triangulated_surfaces.h"
 
 namespace curvature_lines::test {
 namespace {

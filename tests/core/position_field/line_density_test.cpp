@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "constant_crosses.h"
 #include "line_density.h"
 #include "point_cloud.h"
+#include "triangle_mesh.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {

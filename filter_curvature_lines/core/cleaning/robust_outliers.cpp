@@ -22,6 +22,7 @@
 #include "point_restoration.h"
 #include "progress.h"
 #include "quantile.h"
+#include "sparse_restoration.h"
 #include "spatial_order.h"
 
 namespace curvature_lines {
@@ -389,6 +390,9 @@ void RobustVote::restoreSurfaces(const Progress& progress)
 	const Progress part = progress.sub(0.2, 1.0, "Restoring groups");
 	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
 	restorePoints(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
+	if (const Matrix3Xd& normals = m_index.cloud().normals; normals.cols() == m_positions.cols())
+		restoreSparseSurfaces(
+			cloud, normals(Eigen::all, m_order.source), m_flying, m_rejected, part);
 	rejectFlying(m_rejected);
 }
 

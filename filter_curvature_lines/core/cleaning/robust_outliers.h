@@ -10,7 +10,8 @@
 
 namespace curvature_lines {
 
-// OutlierOptions::Mode::Robust. Looks at positions only. The same for any order of the points.
+// OutlierOptions::Mode::Robust. The vote looks at positions only; normals, where there are some, bring
+// sparse parts of the surface back (sparse_restoration.h). The same for any order of the points.
 OutlierResult rejectByRobustVotes(
 	const CloudIndex& index, // unit frame
 	double            sensitivity,

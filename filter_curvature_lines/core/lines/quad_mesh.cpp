@@ -189,8 +189,11 @@ QuadMeshResult buildQuadMesh(
 	splitter.cutLargeFaces();
 	splitter.pairWithPentagons();
 	result.mesh = splitter.mesh();
+	std::vector<char> onFeature(result.mesh.vertexCount(), 0);
 	if (options.splitConcave)
 		result.mesh = withConvexFaces(result.mesh);
+	onFeature.resize(result.mesh.vertexCount(), 0);
+	result.mesh = withQuads(result.mesh, options.quads, onFeature);
 	if (options.triangulate)
 		result.mesh = triangulated(result.mesh);
 	result.topology = topologyOf(result.mesh);

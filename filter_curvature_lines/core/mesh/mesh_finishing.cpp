@@ -9,6 +9,8 @@
 #include "point_cloud.h"
 #include "polygon_mesh.h"
 #include "polygon_splitting.h"
+#include "quad_completion.h"
+#include "quad_subdivision.h"
 
 namespace curvature_lines {
 
@@ -63,6 +65,18 @@ PolygonMesh triangulated(const PolygonMesh& mesh)
 	PolygonSplitter splitter(mesh);
 	splitter.triangulate();
 	return splitter.mesh();
+}
+
+PolygonMesh withQuads(const PolygonMesh& mesh, QuadKind kind, std::vector<char>& onFeature)
+{
+	switch (kind) {
+	case QuadKind::Pure:
+		return completeQuads(mesh, onFeature).mesh;
+	case QuadKind::Subdivided:
+		return subdivided(mesh, onFeature).mesh;
+	default:
+		return mesh;
+	}
 }
 
 } // namespace curvature_lines

@@ -189,10 +189,13 @@ std::array<int, 3> cornerTurns(const TriangleMesh& mesh, const CrossField& field
 	return {0, along(0) & 3, -along(2) & 3};
 }
 
-Index CrossField::singularTriangles() const
+std::vector<Index> singularTriangles(const CrossField& field)
 {
-	return static_cast<Index>(index.size()) -
-	       static_cast<Index>(std::count(index.begin(), index.end(), std::uint8_t(0)));
+	std::vector<Index> result;
+	for (std::size_t t = 0; t < field.index.size(); ++t)
+		if (field.index[t] != 0)
+			result.push_back(static_cast<Index>(t));
+	return result;
 }
 
 DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& curvature)
@@ -290,6 +293,41 @@ CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guid
 		field.index[t] = static_cast<std::uint8_t>(sum & 3);
 	}
 	return field;
+}
+
+// With z = exp(4 i angle) as in smoothness(), for small angles.
+void smoothWithTurns(const TriangleMesh& mesh, const DirectionGuide& guide, CrossField& field)
+{
+	const Index                         n       = mesh.vertexCount();
+	const Eigen::VectorXd               weights = mesh.cotangentWeights();
+	Eigen::VectorXd                     sums    = guide.weights.array() + regularization;
+	Eigen::VectorXd                     right   = Eigen::VectorXd::Zero(n);
+	std::vector<Eigen::Triplet<double>> entries;
+	entries.reserve(mesh.edgeCount() + n);
+	for (Index e = 0; e < mesh.edgeCount(); ++e) {
+		const TriangleMesh::Edge& edge = mesh.edges()[e];
+		const double off      = angleAcross(field, edge.from, edge.to) - quarter * field.turns[e];
+		const double residual = weights[e] * std::remainder(off, 2.0 * double(EIGEN_PI));
+		sums[edge.from] += weights[e];
+		sums[edge.to] += weights[e];
+		right[edge.from] -= residual;
+		right[edge.to] += residual;
+		entries.emplace_back(edge.to, edge.from, -weights[e]);
+	}
+	for (Index v = 0; v < n; ++v) {
+		const double angle = std::atan2(
+			guide.directions.col(v).dot(field.d2.col(v)),
+			guide.directions.col(v).dot(field.d1.col(v)));
+		right[v] += guide.weights[v] * std::remainder(angle, quarter);
+		entries.emplace_back(v, v, sums[v]);
+	}
+	Eigen::SparseMatrix<double> matrix(n, n);
+	matrix.setFromTriplets(entries.begin(), entries.end());
+	const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(matrix);
+	const Eigen::VectorXd angles = solver.solve(right);
+	for (Index v = 0; v < n; ++v)
+		if (std::isfinite(angles[v]))
+			turnFrame(field, v, angles[v]);
 }
 
 } // namespace curvature_lines

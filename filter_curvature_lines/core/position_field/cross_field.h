@@ -36,15 +36,19 @@ struct CrossField {
 	std::vector<std::uint8_t> turns;
 	// Per triangle: the sum of the turns around it, 0..3; not 0: a singular point of the field.
 	std::vector<std::uint8_t> index;
-
-	Index singularTriangles() const;
 };
+
+std::vector<Index> singularTriangles(const CrossField& field);
 
 // Confidence from the standard error of k1 - k2. Vertices on creases and those that are no points of the cloud
 // get their normals from the triangles around, and no direction.
 DirectionGuide directionGuide(const Scaffold& scaffold, const CurvatureField& curvature);
 
 CrossField smoothCrossField(const TriangleMesh& mesh, const DirectionGuide& guide);
+
+// Turns the crosses by less than a quarter so that they are smooth with the turns, and so the singular points, that the
+// field has; they may have been changed.
+void smoothWithTurns(const TriangleMesh& mesh, const DirectionGuide& guide, CrossField& field);
 
 // `d` turned with the smallest rotation that takes unit vector `from` to unit vector `to`.
 Eigen::Vector3d

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "cross_field.h"
+#include "phase_pins.h"
 #include "point_cloud.h"
 #include "position_field.h"
 #include "rims.h"
@@ -140,6 +141,7 @@ PhasePins featurePins(const FeatureAlignment& alignment, const CrossField& field
 {
 	const auto n = static_cast<Index>(alignment.meeting.size());
 	PhasePins  pins(n);
+	pins.crease = alignment.features.edge;
 	for (Index v = 0; v < n; ++v) {
 		if (alignment.meeting[v] >= 2) {
 			pins.fixed[0][v] = pins.fixed[1][v] = 1;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "cross_field.h"
+#include "phase_pins.h"
 #include "position_field.h"
 #include "rims.h"
 #include "scaffold.h"

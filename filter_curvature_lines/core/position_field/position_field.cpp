@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,10 @@
 #include "cross_field.h"
 #include "disjoint_sets.h"
 #include "line_density.h"
+#include "phase_fit.h"
+#include "phase_pins.h"
 #include "point_cloud.h"
+#include "transition_circuit.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
@@ -31,16 +35,8 @@ constexpr double fullTurn = 2.0 * EIGEN_PI;
 // are safe.
 constexpr double shift           = 1e-7;
 constexpr int    eigenIterations = 30;
-// Weights of pins over the largest diagonal, in the start and in the fit: there the pins are exact integers
-// afterwards anyway.
-constexpr double pinWeight     = 100.0;
-constexpr double hardPinWeight = 1e4;
-// Weight that holds the phases where they are, over the mean diagonal: the fit leaves a constant free.
-constexpr double gauge = 1e-8;
-// Weight of triangles where a line ends or the field is singular: there the phase has no gradient like the
-// field's.
-constexpr double unreliable = 1e-6;
-
+// Weight of pins over the largest diagonal.
+constexpr double pinWeight = 100.0;
 Complex rounded(const Complex& z)
 {
 	return {std::round(z.real()), std::round(z.imag())};
@@ -200,153 +196,24 @@ Eigen::VectorXcd periodicStart(
 	return phase;
 }
 
-Eigen::VectorXcd unwrappedEnds(
+// The phase at the end of an edge, in the frame at its start, but for the whole numbers between both.
+Complex
+atEnd(const TriangleMesh& mesh, const CrossField& field, const Eigen::VectorXcd& phase, Index e)
+{
+	return turned(phase[mesh.edges()[e].to], -int(field.turns[e]));
+}
+
+// The whole numbers with which the phase increases along every edge as nearly as it should.
+Eigen::VectorXcd nearestTranslations(
 	const TriangleMesh&     mesh,
 	const CrossField&       field,
 	const Eigen::VectorXcd& rise,
 	const Eigen::VectorXcd& phase)
 {
-	Eigen::VectorXcd end(mesh.edgeCount());
-	for (Index e = 0; e < mesh.edgeCount(); ++e) {
-		const TriangleMesh::Edge& edge = mesh.edges()[e];
-		const Complex             to   = turned(phase[edge.to], -int(field.turns[e]));
-		end[e]                         = to + rounded(phase[edge.from] + rise[e] - to);
-	}
-	return end;
-}
-
-// Increase from corner c to corner c + 1, in the frame of corner c.
-Complex increase(
-	const TriangleMesh&  mesh,
-	const CrossField&    field,
-	const PositionField& positions,
-	Index                triangle,
-	int                  c)
-{
-	const Index   e     = mesh.edgeOf(triangle, c);
-	const Complex along = positions.end[e] - positions.phase[mesh.edges()[e].from];
-	return mesh.isForward(triangle, c) ? along : -turned(along, field.turns[e]);
-}
-
-// Lines that end in the triangle: what is lineEndsIn when the phases are unwrapped around it.
-Complex lineEndsIn(
-	const TriangleMesh&  mesh,
-	const CrossField&    field,
-	const PositionField& positions,
-	Index                triangle)
-{
-	const std::array<int, 3> turns = cornerTurns(mesh, field, triangle);
-	Complex                  sum   = 0.0;
-	for (int c = 0; c < 3; ++c)
-		sum += turned(increase(mesh, field, positions, triangle, c), -turns[c]);
-	return rounded(sum);
-}
-
-// A linear least-squares problem for the phases: unknown 2 v + f is the phase of family f at vertex v.
-struct PhaseFit {
-	std::vector<Triplet> entries; // of the lower half
-	Eigen::VectorXd      right, diagonal;
-
-	explicit PhaseFit(const TriangleMesh& mesh) :
-			right(Eigen::VectorXd::Zero(2 * mesh.vertexCount())),
-			diagonal(Eigen::VectorXd::Zero(2 * mesh.vertexCount()))
-	{
-		entries.reserve(18 * mesh.triangleCount() + 2 * mesh.vertexCount());
-	}
-
-	// The gradient of family f (seen from corner 0) should be the triangle's target. The phase at corner c
-	// in the frame of corner 0 is i^-turns phase + whole[c].
-	void addGradient(
-		const TriangleField&          tri,
-		const Triangle&               corners,
-		int                           f,
-		const std::array<Complex, 3>& whole,
-		double                        weight,
-		double                        drift)
-	{
-		const double   nu     = tri.target[f].norm() + 1e-300;
-		const Vector3d across = tri.target[f] / nu, along = tri.normal.cross(across);
-		const Vector3d a = tri.gradient.transpose() * across, b = tri.gradient.transpose() * along;
-		const Eigen::Matrix3d K = weight * (a * a.transpose() + drift * b * b.transpose());
-		Vector3d              unwrapped, sign;
-		std::array<Index, 3>  unknown;
-		for (int c = 0; c < 3; ++c) {
-			const FamilyImage image = familyBehind(tri.turns[c], f);
-			unknown[c]              = 2 * corners[c] + image.family;
-			sign[c]                 = image.sign;
-			unwrapped[c]            = component(whole[c], f);
-		}
-		const Vector3d pull = weight * nu * a - K * unwrapped;
-		for (int i = 0; i < 3; ++i) {
-			right[unknown[i]] += sign[i] * pull[i];
-			diagonal[unknown[i]] += K(i, i);
-			for (int j = 0; j < 3; ++j)
-				if (unknown[i] >= unknown[j])
-					entries.emplace_back(unknown[i], unknown[j], sign[i] * sign[j] * K(i, j));
-		}
-	}
-
-	// Pinned phases at the nearest integer; the others lightly where they are.
-	void addPins(const PhasePins& pins, const Eigen::VectorXcd& phase)
-	{
-		const double soft = gauge * diagonal.mean(), hard = hardPinWeight * diagonal.maxCoeff();
-		for (Index i = 0; i < right.size(); ++i) {
-			const double x0     = component(phase[i >> 1], i & 1);
-			const bool   pinned = pins.fixed[i & 1][i >> 1];
-			const double weight = pinned ? hard : soft;
-			entries.emplace_back(i, i, weight);
-			right[i] += weight * (pinned ? std::round(x0) : x0);
-		}
-	}
-
-	// Empty where there is no solution.
-	Eigen::VectorXd solution() const
-	{
-		SparseReal matrix(right.size(), right.size());
-		matrix.setFromTriplets(entries.begin(), entries.end());
-		const Solver          solver(matrix);
-		const Eigen::VectorXd x = solver.solve(right);
-		return solver.info() == Eigen::Success && x.allFinite() ? x : Eigen::VectorXd();
-	}
-};
-
-// One linear least-squares fit of the phases with the whole numbers of all triangles held.
-void fit(
-	const TriangleMesh&         mesh,
-	const CrossField&           field,
-	const LineDensity&          density,
-	const PhasePins&            pins,
-	const PositionFieldOptions& options,
-	PositionField&              positions)
-{
-	PhaseFit problem(mesh);
-	for (Index t = 0; t < mesh.triangleCount(); ++t) {
-		const Triangle&        corners = mesh.triangles()[t];
-		const TriangleField    tri     = triangleField(mesh, field, density, t);
-		const Complex          lost    = lineEndsIn(mesh, field, positions, t);
-		const Complex          w0      = positions.phase[corners[0]];
-		std::array<Complex, 3> whole   = {0.0, 0.0, 0.0};
-		const Complex          d01     = increase(mesh, field, positions, t, 0);
-		const Complex          d20 = turned(increase(mesh, field, positions, t, 2), -tri.turns[2]);
-		whole[1] = rounded(w0 + d01 - turned(positions.phase[corners[1]], -tri.turns[1]));
-		whole[2] = rounded(w0 - d20 - turned(positions.phase[corners[2]], -tri.turns[2]));
-		for (int f = 0; f < 2; ++f) {
-			const bool   bad    = field.index[t] != 0 || component(lost, f) != 0.0;
-			const double weight = tri.area * (bad ? unreliable : 1.0);
-			problem.addGradient(tri, corners, f, whole, weight, options.fitDrift);
-		}
-	}
-	problem.addPins(pins, positions.phase);
-	const Eigen::VectorXd x = problem.solution();
-	if (x.size() == 0)
-		return;
-	for (Index v = 0; v < mesh.vertexCount(); ++v) {
-		Vector3d z(x[2 * v], x[2 * v + 1], 0.0);
-		for (int f = 0; f < 2; ++f)
-			if (pins.fixed[f][v])
-				z[f] = std::round(component(positions.phase[v], f));
-		positions.phase[v] = {z[0], z[1]};
-	}
+	Eigen::VectorXcd result(mesh.edgeCount());
+	for (Index e = 0; e < mesh.edgeCount(); ++e)
+		result[e] = rounded(phase[mesh.edges()[e].from] + rise[e] - atEnd(mesh, field, phase, e));
+	return result;
 }
 
 } // namespace
@@ -363,14 +230,30 @@ PositionField positionField(
 		return positions;
 	const Eigen::VectorXcd rise = expectedRise(mesh, field, density);
 	positions.phase             = periodicStart(mesh, field, rise, pins, options);
-	positions.end               = unwrappedEnds(mesh, field, rise, positions.phase);
+	positions.translations      = nearestTranslations(mesh, field, rise, positions.phase);
 	for (int k = 0; k < options.rounds; ++k) {
-		fit(mesh, field, density, pins, options, positions);
-		positions.end = unwrappedEnds(mesh, field, rise, positions.phase);
+		fitPhases(
+			phasePieces(mesh, field, density, positions.translations, false),
+			pins,
+			options.fitDrift,
+			positions.phase);
+		positions.translations = nearestTranslations(mesh, field, rise, positions.phase);
 	}
-	for (Index t = 0; t < mesh.triangleCount(); ++t)
-		positions.lineEnds += field.index[t] == 0 && lineEndsIn(mesh, field, positions, t) != 0.0;
+	finishPositions(mesh, field, positions);
 	return positions;
+}
+
+void finishPositions(const TriangleMesh& mesh, const CrossField& field, PositionField& positions)
+{
+	positions.end.resize(mesh.edgeCount());
+	for (Index e = 0; e < mesh.edgeCount(); ++e)
+		positions.end[e] = atEnd(mesh, field, positions.phase, e) + positions.translations[e];
+	positions.lineEnds = positions.offCrossings = 0;
+	for (Index t = 0; t < mesh.triangleCount(); ++t) {
+		const TransitionCircuit circuit = circuitOf(mesh, field, positions.translations, t);
+		positions.lineEnds += circuit.index == 0 && !circuit.isClosed();
+		positions.offCrossings += circuit.index != 0 && !circuit.isClosed();
+	}
 }
 
 } // namespace curvature_lines

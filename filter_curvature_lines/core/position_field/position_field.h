@@ -4,27 +4,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include <Eigen/Core>
 
 #include "cross_field.h"
 #include "line_density.h"
+#include "phase_pins.h"
 #include "point_cloud.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
-
-// Vertices where a phase is an integer, because they lie on a rim or crease along the other arm.
-struct PhasePins {
-	std::array<std::vector<char>, 2> fixed; // per family and vertex
-
-	explicit PhasePins(Index vertices = 0) :
-			fixed{std::vector<char>(vertices, 0), std::vector<char>(vertices, 0)}
-	{
-	}
-};
 
 struct PositionFieldOptions {
 	// Cost of drifting sideways along a line over that of uneven spacing, in the start and in the fit; and
@@ -40,7 +28,10 @@ struct PositionField {
 	Eigen::VectorXcd phase; // per vertex, in its frame
 	// Per edge: what the phase becomes at `to`, in the frame of `from`: i^-turns phase(to) + whole numbers.
 	Eigen::VectorXcd end;
+	Eigen::VectorXcd translations; // per edge: those whole numbers
 	Index            lineEnds = 0; // triangles in which a line of either family ends
+	// Singular triangles in whose inside no lines cross, so that a face around them is no quad
+	Index offCrossings = 0;
 };
 
 PositionField positionField(
@@ -49,5 +40,8 @@ PositionField positionField(
 	const LineDensity&          density,
 	const PhasePins&            pins,
 	const PositionFieldOptions& options = {});
+
+// Ends and counts from phases and translations.
+void finishPositions(const TriangleMesh& mesh, const CrossField& field, PositionField& positions);
 
 } // namespace curvature_lines

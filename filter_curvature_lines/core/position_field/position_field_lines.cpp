@@ -230,6 +230,36 @@ std::vector<SurfaceSample> projectedPoints(
 	return samples;
 }
 
+std::vector<char> creaseVertices(const Scaffold& scaffold)
+{
+	std::vector<char> result(scaffold.mesh.vertexCount(), 0);
+	for (Index e = 0; e < scaffold.mesh.edgeCount(); ++e)
+		if (scaffold.creaseEdge[e] || scaffold.mesh.edges()[e].isRim())
+			result[scaffold.mesh.edges()[e].from] = result[scaffold.mesh.edges()[e].to] = 1;
+	return result;
+}
+
+// A vertex at which a line ends, on the surface of the cloud, or where it is if that is on a rim or crease.
+SurfaceSample vertexSample(
+	Index                 v,
+	const Scaffold&       scaffold,
+	const CrossField&     field,
+	bool                  onCrease,
+	const CloudIndex&     index,
+	const CurvatureField& curvature)
+{
+	const Vector3d at     = scaffold.mesh.vertices.col(v);
+	SurfaceSample  sample = projectToSurface(
+        index.cloud(),
+        curvature,
+        at,
+        closestOnSide(index.cloud(), index.search(), at, field.normals.col(v)),
+        ProjectionKind::Mixed);
+	if (onCrease)
+		sample.position = at;
+	return sample;
+}
+
 // Why a curve ends at a point of an edge.
 LineEnd endAt(Index e, const Scaffold& scaffold, const CrossField& field)
 {
@@ -283,10 +313,17 @@ LineNetwork linesOf(
 	const std::vector<Index>       first = firstPoints(curves);
 	const Eigen::VectorXd          arms  = familyOfArms(scaffold, field, curvature);
 	std::vector<std::vector<Link>> joined(first.back());
+	std::vector<Index> endVertex; // where a chord ends at a vertex: nodes after those of the edges
+	const auto         nodeOf = [&](const SurfaceCurves::End& end) {
+        if (end.edge >= 0)
+            return first[end.edge] + end.point;
+        endVertex.push_back(end.point);
+        joined.emplace_back();
+        return static_cast<Index>(joined.size()) - 1;
+	};
 	for (const SurfaceCurves::Chord& chord : curves.chords) {
-		const Index a    = first[chord.a.edge] + chord.a.point,
-					b    = first[chord.b.edge] + chord.b.point;
-		const int family = familyOf(chord, curves, scaffold.mesh, field, arms);
+		const Index a = nodeOf(chord.a), b = nodeOf(chord.b);
+		const int   family = familyOf(chord, curves, scaffold.mesh, field, arms);
 		joined[a].push_back({b, family});
 		joined[b].push_back({a, family});
 	}
@@ -295,14 +332,19 @@ LineNetwork linesOf(
 		for (Chain& part : cut(whole))
 			chains.push_back(std::move(part));
 
-	const auto endOf = [&](Index node) {
-		if (joined[node].size() == 2) // cut where the family changes
-			return LineEnd::Umbilic;
-		const auto e = std::upper_bound(first.begin(), first.end(), node) - first.begin() - 1;
-		return endAt(static_cast<Index>(e), scaffold, field);
+	const std::vector<char> onCrease = creaseVertices(scaffold);
+	const auto              endOf    = [&](Index node) {
+        if (joined[node].size() == 2) // cut where the family changes
+            return LineEnd::Umbilic;
+        if (node >= first.back())
+            return onCrease[endVertex[node - first.back()]] ? LineEnd::Crease : LineEnd::Umbilic;
+        const auto e = std::upper_bound(first.begin(), first.end(), node) - first.begin() - 1;
+        return endAt(static_cast<Index>(e), scaffold, field);
 	};
-	return untangled(
-		networkOf(chains, projectedPoints(curves, first, scaffold, index, curvature), endOf));
+	std::vector<SurfaceSample> samples = projectedPoints(curves, first, scaffold, index, curvature);
+	for (const Index v : endVertex)
+		samples.push_back(vertexSample(v, scaffold, field, onCrease[v] != 0, index, curvature));
+	return untangled(networkOf(chains, samples, endOf));
 }
 
 } // namespace curvature_lines

@@ -15,15 +15,12 @@
 #include "curvature_field.h"
 #include "face_caps.h"
 #include "face_untangling.h"
-#include "feature_alignment.h"
-#include "line_density.h"
+#include "field_meshing.h"
 #include "mesh_finishing.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
-#include "position_field.h"
 #include "position_field_lines.h"
 #include "progress.h"
-#include "quad_cleanup.h"
 #include "rim_fit.h"
 #include "rims.h"
 #include "scaffold.h"
@@ -31,8 +28,6 @@
 #include "scaffold_sites.h"
 #include "sizing_field.h"
 #include "surface_arrangement.h"
-#include "surface_curves.h"
-#include "surface_graph.h"
 #include "surface_projection.h"
 #include "thin_creases.h"
 #include "triangle_mesh.h"
@@ -41,68 +36,15 @@ namespace curvature_lines {
 
 namespace {
 
-// Error of the number of vertices beyond which the density is corrected, once: the accuracy that is
-// promised for it.
-constexpr double countTolerance = 0.03;
-
 constexpr Index fewestPoints = 4;
+// A subdivided mesh has as many vertices, edges and faces as the coarse one together: one, two and one.
+constexpr double verticesPerDivided = 4.0;
+// Relative, of a number of vertices that nobody has asked for.
+constexpr double automaticTolerance = 0.2;
 // Projections of a vertex on a rim.
 constexpr int rimSteps = 2;
-// A limb whose end the mesh misses by far may need a cap on a cap.
-constexpr int capRounds = 2;
-// Faces get a cap that are farther below the surface, in mean edges; in the first round and the second. .25 brings the cow
-// down by a fiftieth for a third more irregular vertices, .5 a rod's end up by a tenth.
-constexpr double lowBulge = 0.35, tallBulge = 0.7;
-
-struct FieldMesh {
-	SurfaceCurves      curves;
-	SurfaceArrangement arrangement; // its mesh cleaned up
-	Index              lineEnds = 0;
-};
-
-// The mesh whose lines have this density: phases, their whole numbers as curves, faces between them, clean-up.
-FieldMesh meshOfDensity(
-	const Scaffold&                 scaffold,
-	const CrossField&               field,
-	const LineDensity&              density,
-	const PhasePins&                pins,
-	const SurfaceFeatures&          features,
-	const PositionFieldMeshOptions& options)
-{
-	const PositionField positions =
-		positionField(scaffold.mesh, field, density, pins, options.phases);
-	FieldMesh result;
-	result.curves      = integerLines(scaffold.mesh, field, positions);
-	result.arrangement = arrangeOnSurface(scaffold.mesh, field.normals, features, result.curves);
-	result.lineEnds    = positions.lineEnds;
-	result.arrangement.mesh = cleanUpQuads(result.arrangement.mesh, result.arrangement.onFeature);
-	return result;
-}
-
-// Another try with the density corrected by the number of vertices of the first, where that misses the
-// target: the better one.
-FieldMesh meshOfTargetSize(
-	const Scaffold&                 scaffold,
-	const CrossField&               field,
-	LineDensity                     density,
-	double                          target,
-	const PhasePins&                pins,
-	const SurfaceFeatures&          features,
-	const PositionFieldMeshOptions& options,
-	const Progress&                 progress)
-{
-	FieldMesh    first = meshOfDensity(scaffold, field, density, pins, features, options);
-	const double ratio = first.arrangement.mesh.vertexCount() / target;
-	progress.report(0.7);
-	if (!(ratio > 0.0) || std::abs(ratio - 1.0) <= countTolerance)
-		return first;
-	density /= std::sqrt(ratio);
-	FieldMesh    second = meshOfDensity(scaffold, field, density, pins, features, options);
-	const double next   = second.arrangement.mesh.vertexCount() / target;
-	if (std::abs(next - 1.0) < std::abs(ratio - 1.0))
-		return second;
-	return first;
-}
+// Faces that are farther below the surface, in mean edges, although sizes have shrunk there, get a cap.
+constexpr double tallBulge = 0.7;
 
 // The sizes anew, now that the area is known. Returns how many vertices they ask for.
 double resized(Scaffold& scaffold, const SizingField& sizing, const SizingOptions& options)
@@ -189,7 +131,8 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	const CloudIndex fitted =
 		curvature.height.size() > 0 ? onFittedSurface(index.cloud(), curvature) : index;
 	SizingOptions forSizes;
-	forSizes.targetVertices    = options.targetVertices;
+	const bool    divided      = options.mesh.quads == QuadKind::Subdivided;
+	forSizes.targetVertices    = options.targetVertices / (divided ? verticesPerDivided : 1.0);
 	forSizes.automatic         = options.automatic;
 	const SizingField sizing   = sizingField(index, curvature, forSizes);
 	Scaffold          scaffold = buildScaffold(
@@ -208,37 +151,33 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	if (mesh.triangleCount() == 0)
 		return result;
 
-	std::vector<Rim> rims  = findRims(mesh);
-	DirectionGuide   guide = directionGuide(scaffold, curvature);
-	fitRims(rims, fitted.cloud(), guide.normals, options.noise, scaffold);
-	const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
-	const CrossField       field     = smoothCrossField(mesh, guide);
-	result.singularTriangles         = field.singularTriangles();
+	std::vector<Rim> rims = findRims(mesh);
+	fitRims(
+		rims, fitted.cloud(), directionGuide(scaffold, curvature).normals, options.noise, scaffold);
+	FieldMeshingOptions forMeshing;
+	forMeshing.density.targetVertices = resized(scaffold, sizing, forSizes);
+	forMeshing.density.anisotropy     = options.anisotropy;
+	forMeshing.phases                 = options.phases;
+	forMeshing.closed                 = options.mesh.quads != QuadKind::Dominant;
+	forMeshing.holdTarget             = !options.automatic;
+	if (options.automatic)
+		forMeshing.countTolerance = automaticTolerance;
+	result.expectedVertices =
+		forMeshing.density.targetVertices * (divided ? verticesPerDivided : 1.0);
 	progress.report(0.4);
-	const PhasePins        pins     = featurePins(alignment, field);
-	const SurfaceFeatures& features = alignment.features;
-	LineDensityOptions     wanted;
-	wanted.targetVertices   = resized(scaffold, sizing, forSizes);
-	wanted.anisotropy       = options.anisotropy;
-	result.expectedVertices = wanted.targetVertices;
-	LineDensity density     = lineDensity(scaffold, field, curvature, wanted);
-	progress.report(0.5);
-	FieldMesh meshed = meshOfTargetSize(
-		scaffold,
-		field,
-		std::move(density),
-		wanted.targetVertices,
-		pins,
-		features,
-		options,
-		progress);
+	MeshedField meshed =
+		meshOfField(scaffold, rims, curvature, forMeshing, progress.sub(0.4, 0.9, "Laying lines"));
+	result.singularTriangles  = meshed.singularTriangles;
 	result.lineEnds           = meshed.lineEnds;
+	result.turnedOver         = meshed.turnedOver;
+	result.otherFaces         = meshed.otherFaces;
 	result.crossings          = meshed.arrangement.crossings;
 	result.repairedComponents = meshed.arrangement.repairedComponents;
 	result.droppedComponents += meshed.arrangement.lostComponents;
 	progress.report(0.9);
 	if (options.keepLines) {
-		result.lines           = linesOf(meshed.curves, scaffold, field, index, curvature);
+		result.lines =
+			linesOf(meshed.curves, meshed.surface.scaffold, meshed.surface.field, index, curvature);
 		result.lines.crossings = result.crossings;
 	}
 
@@ -246,13 +185,11 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	result.mesh                 = std::move(meshed.arrangement.mesh);
 	if (options.mesh.splitConcave)
 		result.mesh = withConvexFaces(result.mesh);
+	if (divided)
+		result.mesh = withQuads(result.mesh, options.mesh.quads, onFeature);
 	projectVertices(
 		index, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
-	for (int round = 0, caps = 1; round < capRounds && caps > 0; ++round) {
-		const double bulge = round == 0 ? lowBulge : tallBulge;
-		caps               = capBulgingFaces(fitted, curvature, bulge, result.mesh, onFeature);
-		result.caps += caps;
-	}
+	result.caps         = capBulgingFaces(fitted, curvature, tallBulge, result.mesh, onFeature);
 	result.unsoundFaces = untangleFaces(fitted, curvature, onFeature, result.mesh);
 	if (options.mesh.triangulate)
 		result.mesh = triangulated(result.mesh);

@@ -22,16 +22,19 @@ struct PositionFieldMeshOptions {
 	bool            automatic      = false; // SizingOptions::automatic
 	double          anisotropy = 1.5; // largest ratio of spacings that curvature asks for; 1: none
 	double          noise      = 0.0; // left in the cloud, a length
-	ScaffoldOptions scaffold;         // its target and noise are set from the above
+	ScaffoldOptions scaffold;         // its noise and closed rims are set from the others
 	PositionFieldOptions phases;
 	MeshFinishingOptions mesh;
 	bool                 keepLines = false; // as polylines, beside the mesh
+
+	PositionFieldMeshOptions() { mesh.quads = QuadKind::Pure; }
 };
 
 struct PositionFieldMeshResult : FinishedMesh {
 	Index scaffoldVertices = 0, scaffoldEuler = 0;
 	Index singularTriangles = 0, lineEnds = 0;
-	Index droppedComponents  = 0; // too small for a mesh, or without any line
+	Index turnedOver = 0, otherFaces = 0; // MeshedField: places that were made quads after the fact
+	Index droppedComponents  = 0;         // too small for a mesh, or without any line
 	Index repairedComponents = 0;
 	Index filledHoles = 0, lostCreaseEdges = 0;
 	Index unsoundFaces = 0; // not convex, or turned over, as far as untangleFaces() knows

@@ -40,6 +40,8 @@ constexpr double limbDistance = 0.45;
 // behind (times the root of the number of triangles; 2.3 around a disk, such as a patch of normals that point inwards).
 constexpr Index  fewestTwisted = 6, widestNeck = 4;
 constexpr double neckOfRoot = 0.7;
+// Triangles of a part whose being turned over is a flaw of the whole.
+constexpr Index fewestInPart = 100;
 // Clearance in noise units: the denoised points beside a crease are round. By experiment on cubes.
 constexpr double noiseClearance = 2.0;
 // Attempts with vertices farther and farther apart, and by how much; and others with a slightly different
@@ -55,6 +57,16 @@ constexpr double shortCrease = 10.0;
 constexpr Index  rimFlaws         = 5;
 constexpr Index  unusedFlaws      = 3;
 constexpr double toleratedDefects = 0.002;
+
+// Length of the rims that are filled in any case over ScaffoldOptions::holeSize: what the front leaves of a hole. By
+// experiment.
+constexpr double smallGap = 1.5;
+// Edges of the front must reach the vertices around, in their distances, however small the holes.
+constexpr double shortestEdge = 2.0;
+// A sheet has at most the area of a disk with its rim's length around; what has so many times as much is a body with a hole.
+constexpr double bodyOverDisk = 1.5;
+// Spacings by which edges of the front across a hole make it narrower.
+constexpr double narrower = 2.0;
 
 // Of the vertices, at every point.
 Eigen::VectorXd distancesFor(const SizingField& sizing, const ScaffoldOptions& options)
@@ -151,9 +163,8 @@ separated(const std::vector<Triangle>& front, ScaffoldSites& sites, Scaffold& sc
 	return triangles;
 }
 
-// Where limbs are so thin that a single triangle joins two parts the front may twist: a part of the surface behind such a
-// neck, against whose normals its triangles run, is turned over; the neck tears.
-void untwist(ScaffoldSites& sites, Scaffold& scaffold, std::vector<Triangle>& triangles)
+// Of every triangle: it looks against the normals of its corners.
+std::vector<char> turned(const ScaffoldSites& sites, const std::vector<Triangle>& triangles)
 {
 	const TriangleMesh mesh(sites.points, triangles);
 	std::vector<char>  against(mesh.triangleCount(), 0);
@@ -163,8 +174,35 @@ void untwist(ScaffoldSites& sites, Scaffold& scaffold, std::vector<Triangle>& tr
 			sum += sites.normals.col(v);
 		against[t] = mesh.areaVector(t).dot(sum) < 0.0;
 	}
-	DisjointSets       sets(mesh.triangleCount());
-	std::vector<Index> neck(mesh.triangleCount(), 0), size(mesh.triangleCount(), 0);
+	return against;
+}
+
+// Triangles in parts that are turned over, without the few at the tips of limbs that every front has.
+Index turnedPart(const ScaffoldSites& sites, const std::vector<Triangle>& triangles)
+{
+	const TriangleMesh      mesh(sites.points, triangles);
+	const std::vector<char> against = turned(sites, triangles);
+	DisjointSets            sets(mesh.triangleCount());
+	for (const TriangleMesh::Edge& edge : mesh.edges())
+		if (!edge.isRim() && against[edge.left] && against[edge.right])
+			sets.join(edge.left, edge.right);
+	std::vector<Index> size(mesh.triangleCount(), 0);
+	for (Index t = 0; t < mesh.triangleCount(); ++t)
+		++size[sets.find(t)];
+	Index count = 0;
+	for (Index t = 0; t < mesh.triangleCount(); ++t)
+		count += against[t] && size[sets.find(t)] >= fewestInPart;
+	return count;
+}
+
+// Where limbs are so thin that a single triangle joins two parts the front may twist: a part of the surface behind such a
+// neck, against whose normals its triangles run, is turned over; the neck tears.
+void untwist(ScaffoldSites& sites, Scaffold& scaffold, std::vector<Triangle>& triangles)
+{
+	const TriangleMesh      mesh(sites.points, triangles);
+	const std::vector<char> against = turned(sites, triangles);
+	DisjointSets            sets(mesh.triangleCount());
+	std::vector<Index>      neck(mesh.triangleCount(), 0), size(mesh.triangleCount(), 0);
 	for (const TriangleMesh::Edge& edge : mesh.edges())
 		if (!edge.isRim() && against[edge.left] && against[edge.right])
 			sets.join(edge.left, edge.right);
@@ -224,6 +262,19 @@ void dropSmallComponents(
 		triangles.end());
 }
 
+// Of the component every vertex is of.
+std::vector<double> componentAreas(const TriangleMesh& mesh)
+{
+	const std::vector<Index> component = mesh.components();
+	const Eigen::VectorXd    area      = mesh.vertexAreas();
+	std::vector<double>      sum(component.size(), 0.0), result(component.size());
+	for (std::size_t v = 0; v < component.size(); ++v)
+		sum[component[v]] += area[v];
+	for (std::size_t v = 0; v < component.size(); ++v)
+		result[v] = sum[component[v]];
+	return result;
+}
+
 void fillRims(
 	const Eigen::VectorXd& spacing,
 	const Eigen::VectorXd& size,
@@ -233,20 +284,29 @@ void fillRims(
 	std::vector<Triangle>& triangles)
 {
 	const TriangleMesh open(sites.points, triangles);
+	const bool         wide    = options.holeSize > usualHoleSize;
+	const double       smaller = std::min(1.0, options.holeSize / usualHoleSize);
+	const double longestSmall  = smallGap * smaller * usualHoleSize; // in spacings of the cloud
+	const std::vector<double> areas = wide ? componentAreas(open) : std::vector<double>();
 	for (const std::vector<Index>& rim : open.rims()) {
 		const double length = lengthOf(rim, sites.points);
-		double       small = 0.0, edge = 0.0; // means along the rim
+		double       small = 0.0, edge = 0.0, gap = 0.0; // means along the rim
 		for (const Index v : rim) {
 			small += std::max(
-						 options.smallHole * sites.around[v],
-						 options.smallGap * spacing[sites.place[v]]) /
+						 smaller * options.smallHole * sites.around[v],
+						 longestSmall * spacing[sites.place[v]]) /
 			         double(rim.size());
+			gap += spacing[sites.place[v]] / double(rim.size());
 			edge += size.size() > 0 ? size[sites.place[v]] / double(rim.size()) : 0.0;
 		}
-		const bool hole = length <= small;
-		if (!hole && length > options.closedRim * edge)
+		// A single triangle is no hole of the cloud: around those, however small, more vertices lie. The front leaves
+		// one out where it would have to turn by more than 149 degrees (COS_ALPHA_SLIVER of CGAL's reconstruction).
+		const bool hole  = length <= small || rim.size() == 3;
+		const bool asked = wide && length <= EIGEN_PI * (options.holeSize - narrower) * gap &&
+		                   areas[rim[0]] >= bodyOverDisk * length * length / (4.0 * EIGEN_PI);
+		if (!hole && !asked && length > options.closedRim * edge)
 			continue;
-		scaffold.filledHoles += hole;
+		scaffold.filledHoles += hole || asked;
 		fillRim(rim, sites, triangles);
 	}
 	scaffold.defects += scaffold.filledHoles;
@@ -298,9 +358,10 @@ Scaffold triangulatedSites(
 	const Eigen::VectorXd&    size,
 	const ScaffoldOptions&    options)
 {
-	Scaffold              scaffold;
-	const Eigen::VectorXd longest =
-		(options.longestEdge * sites.around).cwiseMax(options.longestGap * spacing(sites.place));
+	Scaffold     scaffold;
+	const double bridged = std::min(options.holeSize, usualHoleSize);
+	const double edge    = std::max(shortestEdge, options.longestEdge * bridged / usualHoleSize);
+	const Eigen::VectorXd longest = (edge * sites.around).cwiseMax(bridged * spacing(sites.place));
 	const std::vector<Triangle> front     = advancingFront(sites.points, sites.normals, longest);
 	std::vector<Triangle>       triangles = separated(front, sites, scaffold);
 	orient(sites, triangles);
@@ -310,6 +371,7 @@ Scaffold triangulatedSites(
 	dropSmallComponents(raw, component, size, options, sites, scaffold, triangles);
 	fillRims(spacing, size, options, sites, scaffold, triangles);
 	recoverCreaseEdges(sites.points, sites.creaseEdges, triangles);
+	scaffold.turnedTriangles = turnedPart(sites, triangles);
 	finish(sites, order, size, std::move(triangles), scaffold);
 	return scaffold;
 }
@@ -326,7 +388,7 @@ Index topologicalFeatures(const Scaffold& scaffold)
 // Per vertex: a coarse attempt has fewer of everything.
 double flawsOf(const Scaffold& scaffold)
 {
-	const Index flaws = scaffold.defects + scaffold.lostCreaseEdges +
+	const Index flaws = scaffold.defects + scaffold.lostCreaseEdges + scaffold.turnedTriangles +
 	                    unusedFlaws * scaffold.unusedSites +
 	                    rimFlaws * topologicalFeatures(scaffold);
 	return double(flaws) / std::max<Index>(1, scaffold.mesh.vertexCount());
@@ -441,7 +503,8 @@ Scaffold buildScaffold(
 		if (kept.size() == before)
 			continue;
 		Scaffold next = tries.coarserFrom(1.0, kept, part);
-		if (topologicalFeatures(next) < topologicalFeatures(best))
+		if (topologicalFeatures(next) < topologicalFeatures(best) &&
+		    next.turnedTriangles <= best.turnedTriangles)
 			best = std::move(next);
 	}
 	return best;

@@ -17,15 +17,20 @@
 
 namespace curvature_lines {
 
+constexpr double usualHoleSize = 8.0; // in spacings of the cloud
+
 struct ScaffoldOptions {
 	// Least distance of vertices, in spacings of the cloud around (MinimumNeighborhoods::spacing): with .95 the front had the
 	// right topology on 62 of 62 noisy clouds of a prototype, with .55 on 60. On limbs less, so that enough lie around.
 	double thinning = 0.95, limbThinning = 0.3;
-	// In distances of the vertices around, and in spacings of the cloud: the longer. Without a bound on edges the front
-	// closes open surfaces (helicoids in 28 of 30 clouds).
-	double longestEdge = 5.0, longestGap = 8.0;
-	// Rims this short are filled, in distances of the vertices around, and in spacings of the cloud; by experiment.
-	double smallHole = 10.0, smallGap = 12.0;
+	// Holes of the cloud no wider than so many of its spacings are closed, and wider ones where vertices are too far apart
+	// to show them. The front bridges them up to usualHoleSize; a longer bound on its edges would close open surfaces and
+	// join sheets. Wider ones are filled from their rims, not a sheet's outer one.
+	double holeSize = usualHoleSize;
+	// By experiment, with usualHoleSize. Edges of the front are no longer than so many distances of the vertices around or
+	// holeSize, the longer (without a bound helicoids are closed in 28 of 30 clouds); rims are filled up to so many
+	// distances of the vertices around.
+	double longestEdge = 5.0, smallHole = 10.0;
 	double creaseClearance = 0.75; // cloud points so near a crease are left out
 	double closedRim = 0.0; // rims up to this length are closed as well, in edges of the quad mesh
 	double leastArea =
@@ -45,6 +50,7 @@ struct Scaffold {
 	Index           components = 0, droppedComponents = 0;
 	Index           filledHoles = 0, defects = 0; // places where the front did not close by itself
 	Index           lostCreaseEdges = 0;
+	Index           turnedTriangles = 0; // of parts that look against the normals of their corners
 	Index unusedSites = 0; // points that were to be vertices and are in no triangle that was kept
 
 	bool hasCreases() const;

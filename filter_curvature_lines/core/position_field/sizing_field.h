@@ -18,7 +18,7 @@ struct SizingOptions {
 	// The target is nobody's wish: features come on top of it. Else the rest of the surface gives way to them first.
 	bool automatic = false;
 	// Edges around a limb; and so many where the target is too low for that.
-	double aroundLimb = 6.0, fewestAroundLimb = 4.0;
+	double aroundLimb = 7.0, fewestAroundLimb = 4.0;
 	// Edge over the radius of a bend of the surface, at most.
 	double longestAcrossBend = 0.7;
 	// Growth of the size per length on the surface.

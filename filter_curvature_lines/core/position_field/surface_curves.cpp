@@ -39,6 +39,21 @@ std::vector<EdgePoint> pointsOn(const Complex& start, const Complex& end)
 	return points;
 }
 
+// The middle one of the points on a side that are in no arc, -1: there is none.
+int looseOn(int side, int count, const std::vector<std::pair<SidePoint, SidePoint>>& arcs)
+{
+	std::vector<char> matched(count, 0);
+	for (const auto& [p, q] : arcs)
+		for (const SidePoint& s : {p, q})
+			if (s.side == side)
+				matched[s.index] = 1;
+	std::vector<int> loose;
+	for (int k = 0; k < count; ++k)
+		if (!matched[k])
+			loose.push_back(k);
+	return loose.empty() ? -1 : loose[loose.size() / 2];
+}
+
 } // namespace
 
 std::vector<std::pair<SidePoint, SidePoint>> matchSides(const std::array<int, 3>& counts)
@@ -67,14 +82,22 @@ std::vector<std::pair<SidePoint, SidePoint>> matchSides(const std::array<int, 3>
 	return arcs;
 }
 
-SurfaceCurves
-integerLines(const TriangleMesh& mesh, const CrossField& field, const PositionField& positions)
+SurfaceCurves integerLines(
+	const TriangleMesh&      mesh,
+	const CrossField&        field,
+	const PositionField&     positions,
+	const std::vector<char>& crossing)
 {
 	SurfaceCurves curves;
 	curves.points.resize(mesh.edgeCount());
 	for (Index e = 0; e < mesh.edgeCount(); ++e)
 		curves.points[e] = pointsOn(positions.phase[mesh.edges()[e].from], positions.end[e]);
 
+	const auto isWhole = [&](Index v, int f) {
+		const Complex& w = positions.phase[v];
+		const double   x = f == 0 ? w.real() : w.imag();
+		return (!crossing.empty() && crossing[v]) || std::abs(x - std::round(x)) <= tolerance;
+	};
 	std::array<std::array<std::vector<Index>, 3>, 2> sides; // family in the frame of corner 0, side
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
 		const std::array<int, 3> turns = cornerTurns(mesh, field, t);
@@ -93,7 +116,8 @@ integerLines(const TriangleMesh& mesh, const CrossField& field, const PositionFi
 				sides[family][c].push_back(p);
 			}
 		}
-		for (const auto& family : sides) {
+		for (int f = 0; f < 2; ++f) {
+			const auto&        family = sides[f];
 			std::array<int, 3> counts;
 			for (int c = 0; c < 3; ++c)
 				counts[c] = static_cast<int>(family[c].size());
@@ -103,7 +127,19 @@ integerLines(const TriangleMesh& mesh, const CrossField& field, const PositionFi
 					{t,
 				     {mesh.edgeOf(t, p.side), family[p.side][p.index]},
 				     {mesh.edgeOf(t, q.side), family[q.side][q.index]}});
-			curves.ends += counts[0] + counts[1] + counts[2] - 2 * static_cast<Index>(arcs.size());
+			const int loose = counts[0] + counts[1] + counts[2] - 2 * static_cast<int>(arcs.size());
+			curves.ends += loose;
+			if (loose == 0 || joint)
+				continue;
+			for (int c = 0; c < 3; ++c) {
+				const int   opposite = (c + 2) % 3;
+				const Index v        = mesh.triangles()[t][opposite];
+				const int   k        = looseOn(c, counts[c], arcs);
+				if (k < 0 || !isWhole(v, familyBehind(turns[opposite], f).family))
+					continue;
+				curves.chords.push_back({t, {mesh.edgeOf(t, c), family[c][k]}, {-1, v}});
+				--curves.ends;
+			}
 		}
 	}
 	return curves;

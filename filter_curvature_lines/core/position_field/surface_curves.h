@@ -21,11 +21,13 @@ struct EdgePoint {
 
 struct SurfaceCurves {
 	struct End {
-		Index edge, point; // index into points[edge]
+		Index edge;  // -1: it ends at a vertex of the triangles
+		Index point; // index into points[edge], or the vertex
 	};
 	struct Chord {
 		Index triangle;
-		End   a, b; // on two different edges
+		End   a; // on an edge
+		End   b; // on another edge, or at the vertex across
 	};
 	std::vector<std::vector<EdgePoint>> points; // of every edge, by increasing t
 	std::vector<Chord>                  chords; // by triangle
@@ -33,9 +35,13 @@ struct SurfaceCurves {
 };
 
 // The lines on which a phase is an integer. Pinned vertices have integers exactly: the line that runs
-// through them along a rim or crease is the rim or crease itself.
-SurfaceCurves
-integerLines(const TriangleMesh& mesh, const CrossField& field, const PositionField& positions);
+// through them along a rim or crease is the rim or crease itself, and one that comes from elsewhere ends at them. So do
+// those at `crossing` vertices, where both phases are integers whatever positions.phase says.
+SurfaceCurves integerLines(
+	const TriangleMesh&      mesh,
+	const CrossField&        field,
+	const PositionField&     positions,
+	const std::vector<char>& crossing = {});
 
 // Which points on the sides of a triangle belong together, for curves that do not cross: as many as possible
 // go around a corner, nested. Side c runs from corner c to corner c + 1.

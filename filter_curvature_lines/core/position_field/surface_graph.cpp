@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,19 +27,24 @@ using Eigen::Vector3d;
 
 // Where a chord ends on the border of its triangle.
 struct BorderPoint {
-	Index    vertex = -1;
-	int      rank   = 0;                // counter-clockwise around the triangle
+	Index    vertex = -1; // of the graph
+	Index    corner = -1; // the vertex of the triangles there, if it is one
+	int      rank   = 0; // counter-clockwise around the triangle, corners among the points on edges
 	Vector2d at     = Vector2d::Zero(); // barycentric, of corners 1 and 2
 };
 
 struct BorderChord {
 	BorderPoint a, b;
-	// Whether rank r lies on the border that runs counter-clockwise from a to b: right of the chord.
+	// Whether rank r, not that of an end, lies on the border that runs counter-clockwise from a to b: right of the chord.
 	bool isRight(int r) const
 	{
 		return a.rank < b.rank ? a.rank < r && r < b.rank : r < b.rank || r > a.rank;
 	}
-	bool crosses(const BorderChord& o) const { return isRight(o.a.rank) != isRight(o.b.rank); }
+	bool meets(int r) const { return a.rank == r || b.rank == r; }
+	bool crosses(const BorderChord& o) const
+	{
+		return !meets(o.a.rank) && !meets(o.b.rank) && isRight(o.a.rank) != isRight(o.b.rank);
+	}
 	// The end of a crossing chord on the right, counted counter-clockwise from a.
 	int orderOf(const BorderChord& o, int ranks) const
 	{
@@ -80,6 +86,17 @@ struct Passage {
 	bool operator<(const Passage& o) const { return order < o.order; }
 };
 
+// The end of a chord at a corner of its triangle.
+struct Stub {
+	Index triangle;
+	int   order; // counter-clockwise around the corner
+	Index half;  // leaves the corner
+	bool operator<(const Stub& o) const
+	{
+		return std::tie(triangle, order) < std::tie(o.triangle, o.order);
+	}
+};
+
 class SurfaceGraphBuilder {
 public:
 	SurfaceGraphBuilder(
@@ -92,6 +109,8 @@ public:
 			m_mesh(mesh), m_normals(normals), m_features(features), m_curves(curves),
 			m_component(component), m_filled(filled)
 	{
+		m_vertexAt.assign(m_mesh.vertexCount(), -1);
+		m_stubs.resize(m_mesh.vertexCount());
 		addEdgePoints();
 		addChords();
 		addMeshEdges();
@@ -140,23 +159,50 @@ private:
 		return m_firstPoint[end.edge] + end.point;
 	}
 
-	BorderPoint borderPoint(Index t, const SurfaceCurves::End& end) const
+	// Of corner c of a triangle, or the number of all if c is 3.
+	int rankOf(Index t, int c) const
 	{
+		int rank = c;
+		for (int side = 0; side < c; ++side)
+			rank += static_cast<int>(m_curves.points[m_mesh.edgeOf(t, side)].size());
+		return rank;
+	}
+
+	BorderPoint borderPoint(Index t, const SurfaceCurves::End& end)
+	{
+		const std::array<Vector2d, 3> corners = {
+			Vector2d(0.0, 0.0), Vector2d(1.0, 0.0), Vector2d(0.0, 1.0)};
 		BorderPoint p;
+		if (end.edge < 0) {
+			int c = 0;
+			while (m_mesh.triangles()[t][c] != end.point)
+				++c;
+			p.vertex = graphVertexOf(end.point);
+			p.corner = end.point;
+			p.rank   = rankOf(t, c);
+			p.at     = corners[c];
+			return p;
+		}
 		p.vertex = vertexOf(end);
 		int side = 0;
 		while (m_mesh.edgeOf(t, side) != end.edge)
 			++side;
-		const auto count = static_cast<int>(m_curves.points[end.edge].size());
-		const bool ahead = m_mesh.isForward(t, side);
-		for (int c = 0; c < side; ++c)
-			p.rank += static_cast<int>(m_curves.points[m_mesh.edgeOf(t, c)].size());
-		p.rank += ahead ? end.point : count - 1 - end.point;
-		const double   along     = m_curves.points[end.edge][end.point].t;
-		const Vector2d corners[] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-		const double   s         = ahead ? along : 1.0 - along;
-		p.at                     = (1.0 - s) * corners[side] + s * corners[(side + 1) % 3];
+		const auto   count = static_cast<int>(m_curves.points[end.edge].size());
+		const bool   ahead = m_mesh.isForward(t, side);
+		const double along = m_curves.points[end.edge][end.point].t;
+		const double s     = ahead ? along : 1.0 - along;
+		p.rank             = rankOf(t, side) + 1 + (ahead ? end.point : count - 1 - end.point);
+		p.at               = (1.0 - s) * corners[side] + s * corners[(side + 1) % 3];
 		return p;
+	}
+
+	Index graphVertexOf(Index v)
+	{
+		if (m_vertexAt[v] < 0) {
+			m_vertexAt[v] = addVertex(m_mesh.vertices.col(v), m_normals.col(v), m_component[v]);
+			m_kept[m_vertexAt[v]] = m_features.corner[v];
+		}
+		return m_vertexAt[v];
 	}
 
 	void addChords()
@@ -192,9 +238,7 @@ private:
 	std::vector<std::vector<Passage>> crossChords(
 		Index t, const std::vector<BorderChord>& chords, std::vector<ChordCrossing>& crossings)
 	{
-		int ranks = 0;
-		for (int c = 0; c < 3; ++c)
-			ranks += static_cast<int>(m_curves.points[m_mesh.edgeOf(t, c)].size());
+		const int                         ranks = rankOf(t, 3);
 		std::vector<std::vector<Passage>> passages(chords.size());
 		for (std::size_t p = 0; p < chords.size(); ++p) {
 			for (std::size_t q = p + 1; q < chords.size(); ++q) {
@@ -244,34 +288,33 @@ private:
 			atCrossing[passages[k].slot]     = half[k + 1];
 			atCrossing[passages[k].slot + 1] = HalfEdgeGraph::twin(half[k]);
 		}
-		leaveBorder(t, chord.a.vertex, half.front());
-		leaveBorder(t, chord.b.vertex, HalfEdgeGraph::twin(half.back()));
+		leaveBorder(t, chord.a, chord.b, half.front());
+		leaveBorder(t, chord.b, chord.a, HalfEdgeGraph::twin(half.back()));
 	}
 
-	// Half-edge h leaves an edge point into triangle t.
-	void leaveBorder(Index t, Index point, Index h)
+	// Half-edge h of a chord leaves one of its ends into triangle t.
+	void leaveBorder(Index t, const BorderPoint& at, const BorderPoint& other, Index h)
 	{
-		const auto e = static_cast<Index>(
-						   std::upper_bound(m_firstPoint.begin(), m_firstPoint.end(), point) -
-						   m_firstPoint.begin()) -
+		if (at.corner >= 0) {
+			const int ranks = rankOf(t, 3);
+			m_stubs[at.corner].push_back({t, (other.rank - at.rank + ranks) % ranks, h});
+			return;
+		}
+		const Index point = at.vertex;
+		const auto  e     = static_cast<Index>(
+                           std::upper_bound(m_firstPoint.begin(), m_firstPoint.end(), point) -
+                           m_firstPoint.begin()) -
 		               1;
 		m_chordAt[point][m_mesh.edges()[e].left == t ? 0 : 1] = h;
 	}
 
 	void addMeshEdges()
 	{
-		m_vertexAt.assign(m_mesh.vertexCount(), -1);
 		m_leaving.assign(m_mesh.edgeCount(), {-1, -1});
 		m_alongAt.assign(m_chordAt.size(), {-1, -1});
 		for (Index e = 0; e < m_mesh.edgeCount(); ++e) {
 			if (!isInGraph(e))
 				continue;
-			for (const Index v : {m_mesh.edges()[e].from, m_mesh.edges()[e].to}) {
-				if (m_vertexAt[v] >= 0)
-					continue;
-				m_vertexAt[v] = addVertex(m_mesh.vertices.col(v), m_normals.col(v), m_component[v]);
-				m_kept[m_vertexAt[v]] = m_features.corner[v];
-			}
 			addMeshEdge(e);
 		}
 	}
@@ -281,10 +324,10 @@ private:
 	{
 		const auto&        edge    = m_mesh.edges()[e];
 		const bool         feature = edge.isRim() || m_features.edge[e];
-		std::vector<Index> path    = {m_vertexAt[edge.from]};
+		std::vector<Index> path    = {graphVertexOf(edge.from)};
 		for (Index p = m_firstPoint[e]; p < m_firstPoint[e + 1]; ++p)
 			path.push_back(p);
-		path.push_back(m_vertexAt[edge.to]);
+		path.push_back(graphVertexOf(edge.to));
 		const std::vector<Index> half = m_builder.addPath(path);
 		m_isFilling.resize(m_builder.edgeCount(), !feature);
 		for (const Index h : half) {
@@ -311,33 +354,44 @@ private:
 
 	void sortAtVertices()
 	{
-		// Counter-clockwise around a corner, the edge that begins there is followed by the one that ends
-		// there.
-		std::vector<std::vector<std::pair<Index, Index>>> follows(m_mesh.vertexCount());
+		// Counter-clockwise around a corner, the edge that begins there is followed by the chords that end there, then by
+		// the edge that ends there.
+		struct Corner {
+			Index triangle, first, second;
+		};
+		std::vector<std::vector<Corner>> fans(m_mesh.vertexCount());
 		for (Index t = 0; t < m_mesh.triangleCount(); ++t)
 			for (int c = 0; c < 3; ++c)
 				if (m_vertexAt[m_mesh.triangles()[t][c]] >= 0)
-					follows[m_mesh.triangles()[t][c]].emplace_back(
-						m_mesh.edgeOf(t, c), m_mesh.edgeOf(t, (c + 2) % 3));
+					fans[m_mesh.triangles()[t][c]].push_back(
+						{t, m_mesh.edgeOf(t, c), m_mesh.edgeOf(t, (c + 2) % 3)});
 		for (Index v = 0; v < m_mesh.vertexCount(); ++v) {
-			auto& pairs = follows[v];
-			if (pairs.empty())
+			const auto& fan = fans[v];
+			if (fan.empty())
 				continue;
-			Index first = pairs[0].first;
-			for (const auto& pair : pairs) // at a rim the fan has a beginning
-				if (m_mesh.edges()[pair.first].isRim() &&
-				    std::none_of(pairs.begin(), pairs.end(), [&](const auto& o) {
-						return o.second == pair.first;
+			std::sort(m_stubs[v].begin(), m_stubs[v].end());
+			Index first = fan[0].first;
+			for (const Corner& corner : fan) // at a rim the fan has a beginning
+				if (m_mesh.edges()[corner.first].isRim() &&
+				    std::none_of(fan.begin(), fan.end(), [&](const Corner& o) {
+						return o.second == corner.first;
 					}))
-					first = pair.first;
+					first = corner.first;
 			std::vector<Index>& around = m_around[m_vertexAt[v]];
 			Index               e      = first;
 			do {
 				if (isInGraph(e))
 					around.push_back(m_leaving[e][m_mesh.edges()[e].from == v ? 0 : 1]);
-				const auto next = std::find_if(
-					pairs.begin(), pairs.end(), [&](const auto& p) { return p.first == e; });
-				e = next == pairs.end() ? first : next->second;
+				const auto corner = std::find_if(
+					fan.begin(), fan.end(), [&](const Corner& c) { return c.first == e; });
+				if (corner == fan.end()) {
+					e = first;
+					continue;
+				}
+				for (const Stub& stub : m_stubs[v])
+					if (stub.triangle == corner->triangle)
+						around.push_back(stub.half);
+				e = corner->second;
 			} while (e != first);
 		}
 	}
@@ -364,6 +418,7 @@ private:
 	// Of every edge of the triangles: the half-edges along it at its start and at its end.
 	std::vector<std::array<Index, 2>> m_leaving;
 	std::vector<Index>                m_vertexAt; // of every vertex of the triangles, -1: none
+	std::vector<std::vector<Stub>>    m_stubs;    // of every vertex of the triangles
 };
 
 } // namespace

@@ -1,20 +1,25 @@
 // Lines of whole phases as polylines: closed circles on a torus, from rim to rim on a cylinder, each along its family.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "closed_surfaces.h"
 #include "constant_crosses.h"
+#include "cross_field.h"
 #include "curvature_field.h"
 #include "exact_field.h"
 #include "line_density.h"
 #include "line_network.h"
 #include "line_networks.h"
 #include "neighborhoods.h"
+#include "phase_pins.h"
 #include "point_cloud.h"
 #include "position_field.h"
 #include "position_field_lines.h"
+#include "singular_vertices.h"
 #include "surface_curves.h"
 #include "triangulated_surfaces.h"
 
@@ -96,6 +101,49 @@ TEST(PositionFieldLines, OfATorusLieOnItAlongTheirFamilies)
 		EXPECT_NEAR(std::hypot(p.head<2>().norm() - 1.0, p.z()), 0.4, 0.01);
 		EXPECT_NEAR(found.lines.normals.col(v).norm(), 1.0, 1e-9);
 	}
+}
+
+// Lines of whole phases end at singular points: three or five at each, and nowhere else.
+TEST(PositionFieldLines, EndAtSingularPoints)
+{
+	const test::CrossedSurface crossed = test::crossed(test::triangulatedEllipsoid(4));
+	const test::ClosedSurface  closed(
+        crossed.scaffold, directionGuide(crossed.scaffold, crossed.curvature), 5.0);
+	const SingularVertices on = splitSingularTriangles(
+		closed.scaffold, closed.closed.field, closed.closed.positions, closed.alignment.features);
+	const SurfaceCurves curves =
+		integerLines(on.scaffold.mesh, on.field, on.positions, on.singular);
+	ASSERT_EQ(curves.ends, 0);
+	const PointCloud     cloud{crossed.surface.mesh.vertices, crossed.surface.truth.normals};
+	const NeighborSearch search(cloud.positions);
+	const CurvatureField field =
+		test::exactField(crossed.surface.truth, cloud, search, minimumNeighborhoods(cloud, search));
+	const LineNetwork lines = linesOf(curves, on.scaffold, on.field, cloud, field);
+	EXPECT_GT(lines.lines(), 20);
+	EXPECT_EQ(tests::crossingsWithinFamilies(lines), 0);
+	std::vector<int> meeting(on.scaffold.mesh.vertexCount(), 0);
+	for (Index l = 0; l < lines.lines(); ++l)
+		for (int side = 0; side < 2; ++side) {
+			if (lines.closed[l])
+				continue;
+			EXPECT_TRUE(
+				lines.ends[l][side] == LineEnd::Umbilic || lines.ends[l][side] == LineEnd::Line);
+			const Vector3d end =
+				lines.vertices.col(side == 0 ? lines.offsets[l] : lines.offsets[l + 1] - 1);
+			for (Index v = 0; v < on.scaffold.mesh.vertexCount(); ++v)
+				if (on.singular[v] && (on.scaffold.mesh.vertices.col(v) - end).norm() < 0.01)
+					++meeting[v];
+		}
+	for (Index v = 0; v < on.scaffold.mesh.vertexCount(); ++v)
+		if (on.singular[v]) {
+			EXPECT_GE(meeting[v], 3);
+			EXPECT_LE(meeting[v], 5);
+		}
+	for (Index v = 0; v < static_cast<Index>(lines.vertices.cols()); ++v)
+		EXPECT_LT(
+			(samples::surface("ellipsoid").project(lines.vertices.col(v)) - lines.vertices.col(v))
+				.norm(),
+			5e-3);
 }
 
 TEST(PositionFieldLines, NoCurvesAreNoLines)

@@ -9,6 +9,7 @@
 #include "constant_crosses.h"
 #include "cross_field.h"
 #include "line_density.h"
+#include "phase_pins.h"
 #include "point_cloud.h"
 #include "position_field.h"
 #include "triangle_mesh.h"
@@ -46,6 +47,7 @@ void expectSound(const CrossedSurface& surface, const PositionField& positions)
 			turned(positions.phase[mesh.edges()[e].to], -int(surface.field.turns[e]));
 		EXPECT_LT(distanceToWhole(whole.real()), 1e-9);
 		EXPECT_LT(distanceToWhole(whole.imag()), 1e-9);
+		EXPECT_LT(std::abs(whole - positions.translations[e]), 1e-9);
 	}
 	Index ends = 0;
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
@@ -222,6 +224,33 @@ TEST(PositionField, DoesNotChangeWithTheSurfacesPlaceAndSize)
 			std::abs(std::abs(p.end[e] - p.phase[from]) - std::abs(q.end[e] - q.phase[from])),
 			1e-4);
 	}
+}
+
+// Around a singular point lines cross in it, or not.
+TEST(PositionField, CountsSingularTrianglesWithoutACrossing)
+{
+	CrossedSurface sphere = test::crossed(test::triangulatedSphere(3));
+	DirectionGuide guide;
+	guide.normals    = sphere.surface.truth.normals;
+	guide.directions = sphere.surface.truth.d1;
+	guide.weights.setZero(sphere.surface.size());
+	guide.onCrease.assign(sphere.surface.size(), 0);
+	sphere.field = smoothCrossField(sphere.surface.mesh, guide);
+	ASSERT_EQ(singularTriangles(sphere.field).size(), 8);
+	PositionField positions = positionField(
+		sphere.surface.mesh,
+		sphere.field,
+		constantDensity(sphere, 3.1, 3.1),
+		PhasePins(sphere.surface.size()));
+	expectSound(sphere, positions);
+	EXPECT_LE(positions.offCrossings, 8);
+	// A line more over one side of such a triangle: it is on a crossing if it was not, and the other way round.
+	const Index t      = singularTriangles(sphere.field)[0];
+	const Index before = positions.offCrossings;
+	positions.translations[sphere.surface.mesh.edgeOf(t, 1)] += 1.0;
+	finishPositions(sphere.surface.mesh, sphere.field, positions);
+	EXPECT_EQ(std::abs(positions.offCrossings - before), 1);
+	expectSound(sphere, positions);
 }
 
 TEST(PositionField, EmptyMesh)

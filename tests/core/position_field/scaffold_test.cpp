@@ -284,6 +284,58 @@ TEST(Scaffold, SparsePartsStayClosedAndHolesStayOpen)
 	}
 }
 
+// Evenly spread points of a unit sphere, without those in a hole at its top that is so many spacings wide.
+PointCloud sphereWithHole(double width)
+{
+	constexpr int points  = 8000;
+	const double  spacing = std::sqrt(4.0 * EIGEN_PI / points);
+	const double  highest = std::cos(0.5 * width * spacing);
+	PointCloud    cloud;
+	cloud.positions.resize(3, points);
+	Index kept = 0;
+	for (int i = 0; i < points; ++i) {
+		const double z = 1.0 - 2.0 * (i + 0.5) / points, r = std::sqrt(1.0 - z * z);
+		const double turn = i * EIGEN_PI * (3.0 - std::sqrt(5.0)); // golden angle
+		if (z < highest)
+			cloud.positions.col(kept++) << r * std::cos(turn), r * std::sin(turn), z;
+	}
+	cloud.positions.conservativeResize(3, kept);
+	cloud.normals = cloud.positions;
+	return cloud;
+}
+
+TEST(Scaffold, ClosesHolesUpToTheSizeAskedFor)
+{
+	for (const double width : {5.0, 6.5, 13.0, 18.0, 26.0}) {
+		const CloudIndex index = sphereWithHole(width);
+		for (const double size : {3.0, 8.0, 15.0, 30.0}) {
+			SCOPED_TRACE(testing::Message() << width << " " << size);
+			ScaffoldOptions options;
+			options.holeSize = size;
+			const Scaffold scaffold =
+				buildScaffold(index, {}, test::evenSizes(index, 4000), options);
+			EXPECT_EQ(scaffold.components, 1);
+			EXPECT_EQ(scaffold.mesh.rims().size(), width < size ? 0u : 1u);
+			EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), width < size ? 2 : 1);
+		}
+	}
+}
+
+TEST(Scaffold, TheRimOfASheetIsNoHoleOfAnySize)
+{
+	ScaffoldOptions options;
+	options.holeSize = 1000.0;
+	for (const Expected& e :
+	     {Expected{"plane", 2000, 1, 1},
+	      Expected{"helicoid", 4000, 1, 1},
+	      Expected{"cylinder", 4000, 2, 0}}) {
+		const CloudIndex index    = cloudOf(request(e.surface, e.points));
+		const Scaffold   scaffold = buildScaffold(index, {}, {}, options);
+		EXPECT_EQ(scaffold.mesh.eulerCharacteristic(), e.euler) << e.surface;
+		EXPECT_EQ(static_cast<int>(scaffold.mesh.rims().size()), e.rims) << e.surface;
+	}
+}
+
 TEST(Scaffold, BadInputMakesNoTriangle)
 {
 	EXPECT_EQ(buildScaffold({}).mesh.triangleCount(), 0);

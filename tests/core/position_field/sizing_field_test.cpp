@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -361,16 +363,16 @@ TEST(SizingField, FeaturesGiveWayDownToFourEdgesAround)
 	// A target that nobody asked for may double.
 	const SizingField own = sizesOf(shape, optionsFor(300, true));
 	EXPECT_NEAR(own.expected, 600, 30);
-	EXPECT_GT(own.feature.minCoeff(), 1.05 * 2 * EIGEN_PI * radius / 6);
-	// More vertices, more edges around; from six on the features have what they want.
+	EXPECT_GT(own.feature.minCoeff(), 1.05 * 2 * EIGEN_PI * radius / options.aroundLimb);
+	// More vertices, more edges around; from seven on the features have what they want.
 	double before = size[size.size() / 2];
-	for (const double target : {400.0, 700.0, 1000.0}) {
+	for (const double target : {400.0, 700.0, 1000.0, 1500.0}) {
 		const auto next =
 			valuesWhere(sizesOf(shape, optionsFor(target)).size(), onShaft(shape, 1.8));
 		EXPECT_LE(next[next.size() / 2], before + 1e-9);
 		before = next[next.size() / 2];
 	}
-	EXPECT_NEAR(before, 2 * EIGEN_PI * radius / 6, 0.05 * radius);
+	EXPECT_NEAR(before, 2 * EIGEN_PI * radius / options.aroundLimb, 0.05 * radius);
 }
 
 // Bends give way further than limbs do: to four times, where a limb keeps its four edges around.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <vector>
 
@@ -12,9 +13,14 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "closed_surfaces.h"
+#include "cross_field.h"
+#include "gauged_fields.h"
 #include "half_edge_graph.h"
 #include "level_sets.h"
 #include "point_cloud.h"
+#include "position_field.h"
+#include "singular_vertices.h"
 #include "surface_curves.h"
 #include "triangle_mesh.h"
 #include "triangulated_surfaces.h"
@@ -272,6 +278,76 @@ TEST(SurfaceGraph, RimsAndCreasesAreFeaturesAndCornersStay)
 		}
 	EXPECT_TRUE(cornerStays);
 	EXPECT_EQ(left, 3);
+}
+
+// Lines of both families through a vertex, each a chord on either side of it.
+TEST(SurfaceGraph, ChordsThatEndAtAVertexAreSortedAroundIt)
+{
+	const TriangleMesh mesh = triangulatedPlane(8, 0.3).mesh;
+	for (const Index inner : {40, 30, 41})
+		for (const double angle : {0.3, 0.8, 1.2}) {
+			const CrossField field = alongTheAxes(mesh);
+			PositionField    positions;
+			positions.phase.resize(mesh.vertexCount());
+			for (Index v = 0; v < mesh.vertexCount(); ++v) {
+				const Vector3d d   = mesh.vertices.col(v) - mesh.vertices.col(inner);
+				positions.phase[v] = 4.7 * std::polar(1.0, angle) * Complex(d.x(), d.y());
+			}
+			positions.translations.setZero(mesh.edgeCount());
+			finishPositions(mesh, field, positions);
+			const SurfaceCurves curves = integerLines(mesh, field, positions);
+			ASSERT_EQ(curves.ends, 0);
+			for (const char fill : {0, 1}) {
+				const SurfaceGraph drawn = graphOf(
+					mesh, noFeatures(mesh), curves, std::vector<char>(mesh.vertexCount(), fill));
+				Index at = -1;
+				for (Index v = 0; v < drawn.graph.vertexCount(); ++v) {
+					ASSERT_FALSE(drawn.graph.around(v).empty());
+					EXPECT_NEAR(turnAround(drawn.graph, v), 2.0 * EIGEN_PI, 1e-9) << v;
+					if ((drawn.graph.positions().col(v) - mesh.vertices.col(inner)).norm() < 1e-12)
+						at = v;
+				}
+				ASSERT_GE(at, 0);
+				Index degree = 4; // and the edges of the triangles, if they are drawn
+				for (const auto& edge : mesh.edges())
+					degree += fill && (edge.from == inner || edge.to == inner);
+				EXPECT_EQ(static_cast<Index>(drawn.graph.around(at).size()), degree);
+				EXPECT_EQ(drawn.graph.eulerCharacteristic(), 2);
+				if (fill)
+					continue;
+				// Lines that cross at the vertex cross nowhere else, and the others as the formulas say.
+				for (const Index v : crossingsOf(drawn.graph)) {
+					const Vector3d d =
+						drawn.graph.positions().col(v) - Vector3d(mesh.vertices.col(inner));
+					const Complex w = 4.7 * std::polar(1.0, angle) * Complex(d.x(), d.y());
+					EXPECT_LT(awayFromWhole(w.real()), 1e-9);
+					EXPECT_LT(awayFromWhole(w.imag()), 1e-9);
+				}
+			}
+		}
+}
+
+// Three lines come together at every singular point of a sphere: all faces are quads, six of them around the whole.
+TEST(SurfaceGraph, LinesThatMeetAtSingularPointsBoundQuads)
+{
+	const ClosedSurface    sphere(triangulatedSphere(4), 0.0, 2.7);
+	const SingularVertices on = splitSingularTriangles(
+		sphere.scaffold, sphere.closed.field, sphere.closed.positions, sphere.alignment.features);
+	ASSERT_TRUE(sphere.closed.turnedOver.empty());
+	const SurfaceCurves curves =
+		integerLines(on.scaffold.mesh, on.field, on.positions, on.singular);
+	SurfaceGraph drawn = graphOf(on.scaffold.mesh, on.features, curves);
+	EXPECT_EQ(drawn.graph.eulerCharacteristic(), 2);
+	drawn.graph.reduce();
+	Index three = 0;
+	for (Index v = 0; v < drawn.graph.vertexCount(); ++v) {
+		const auto degree = static_cast<Index>(drawn.graph.around(v).size());
+		EXPECT_TRUE(degree == 0 || degree == 3 || degree == 4) << degree;
+		three += degree == 3;
+	}
+	EXPECT_EQ(three, 8);
+	for (const auto& loop : drawn.graph.faceLoops())
+		EXPECT_EQ(loop.size(), 4u);
 }
 
 } // namespace

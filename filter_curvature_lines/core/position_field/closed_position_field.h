@@ -1,0 +1,45 @@
+// A position field in which no line ends, every singular point of the crosses is a crossing of lines, and no triangle is
+// turned over: what its lines bound are quads.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "cross_field.h"
+#include "integer_flow.h"
+#include "line_density.h"
+#include "phase_pins.h"
+#include "point_cloud.h"
+#include "position_field.h"
+#include "progress.h"
+#include "triangle_mesh.h"
+
+namespace curvature_lines {
+
+struct ClosingOptions {
+	IntegerFlowOptions flow;
+	// PositionFieldOptions::fitDrift, with closed whole numbers: 3 to 100 make no difference in a prototype.
+	double drift = 30.0;
+	// Times singular points may move on to the triangle that their crossing is in.
+	int moves = 3;
+};
+
+struct ClosedPositionField {
+	PositionField positions;
+	CrossField    field; // its singular points have moved
+	// Triangles turned over in the plane of the phases, where faces may overlap or be no quads
+	std::vector<Index> turnedOver;
+};
+
+// `guide`: the one `field` comes from.
+ClosedPositionField closePositionField(
+	const TriangleMesh&   mesh,
+	const DirectionGuide& guide,
+	CrossField            field,
+	const LineDensity&    density,
+	const PhasePins&      pins,
+	PositionField         positions,
+	const ClosingOptions& options  = {},
+	const Progress&       progress = {});
+
+} // namespace curvature_lines

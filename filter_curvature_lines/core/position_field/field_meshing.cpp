@@ -1,0 +1,206 @@
+// One pass, and as many more as correct its number of vertices and its creases.
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "field_meshing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "closed_position_field.h"
+#include "crease_selection.h"
+#include "cross_field.h"
+#include "curvature_field.h"
+#include "feature_alignment.h"
+#include "line_density.h"
+#include "phase_pins.h"
+#include "polygon_mesh.h"
+#include "position_field.h"
+#include "progress.h"
+#include "quad_cleanup.h"
+#include "quad_completion.h"
+#include "rims.h"
+#include "scaffold.h"
+#include "singular_pairs.h"
+#include "singular_vertices.h"
+#include "size_feedback.h"
+#include "surface_arrangement.h"
+#include "surface_curves.h"
+#include "surface_graph.h"
+
+namespace curvature_lines {
+
+namespace {
+
+constexpr int mostPasses = 3;
+
+// What a pass starts from.
+struct Directions {
+	DirectionGuide   guide;
+	FeatureAlignment alignment;
+	CrossField       field;
+	LineDensity      density;
+};
+
+Directions directionsOf(
+	const Scaffold&            scaffold,
+	const std::vector<Rim>&    rims,
+	const CurvatureField&      curvature,
+	const FieldMeshingOptions& options)
+{
+	Directions result;
+	result.guide     = directionGuide(scaffold, curvature);
+	result.alignment = alignWithFeatures(scaffold, rims, result.guide);
+	if (options.closed) {
+		result.field        = calmCrossField(scaffold, result.guide, options.pairs);
+		const Index changed = joinSingularPairs(scaffold, result.field, options.pairs) +
+		                      spreadSingularPoints(scaffold, result.field, options.pairs);
+		if (changed > 0)
+			smoothWithTurns(scaffold.mesh, result.guide, result.field);
+	}
+	else
+		result.field = smoothCrossField(scaffold.mesh, result.guide);
+	result.density = lineDensity(scaffold, result.field, curvature, options.density);
+	return result;
+}
+
+// `closed`: ClosedPositionField; `turnedOver`: its triangles.
+MeshedField meshOnce(
+	const Scaffold&            scaffold,
+	const Directions&          directions,
+	double                     denser,
+	const FieldMeshingOptions& options,
+	bool                       closed,
+	std::vector<Index>&        turnedOver)
+{
+	MeshedField       result;
+	const LineDensity density = denser * directions.density;
+	const PhasePins   pins    = featurePins(directions.alignment, directions.field);
+	PositionField     positions =
+		positionField(scaffold.mesh, directions.field, density, pins, options.phases);
+	const SurfaceFeatures& features = directions.alignment.features;
+	if (closed) {
+		ClosingOptions closing         = options.closing;
+		closing.flow.onLimb            = scaffold.onLimb;
+		const ClosedPositionField laid = closePositionField(
+			scaffold.mesh,
+			directions.guide,
+			directions.field,
+			density,
+			pins,
+			std::move(positions),
+			closing);
+		turnedOver     = laid.turnedOver;
+		result.surface = splitSingularTriangles(scaffold, laid.field, laid.positions, features);
+	}
+	else
+		result.surface = {scaffold, directions.field, std::move(positions), features, {}};
+	const SingularVertices& on = result.surface;
+	result.singularTriangles   = static_cast<Index>(singularTriangles(directions.field).size());
+	result.lineEnds            = on.positions.lineEnds;
+	result.turnedOver          = static_cast<Index>(turnedOver.size());
+	result.curves = integerLines(on.scaffold.mesh, on.field, on.positions, on.singular);
+	result.arrangement =
+		arrangeOnSurface(on.scaffold.mesh, on.field.normals, on.features, result.curves);
+	PolygonMesh& mesh = result.arrangement.mesh;
+	mesh              = cleanUpQuads(mesh, result.arrangement.onFeature);
+	if (options.closed) {
+		for (Index f = 0; f < mesh.faceCount(); ++f)
+			result.otherFaces += mesh.faces[f].size() != 4;
+		mesh = completeQuads(mesh, result.arrangement.onFeature).mesh;
+	}
+	return result;
+}
+
+// That the sizes ask for.
+double neededVertices(const Scaffold& scaffold)
+{
+	return scaffold.size.size() == 0
+	           ? 0.0
+	           : (scaffold.mesh.vertexAreas().array() / scaffold.size.array().square()).sum();
+}
+
+// What is lost first, then the number of vertices, as far as it is promised; then the faces that came out as quads by
+// themselves.
+bool isBetter(
+	const MeshedField&         next,
+	double                     miss,
+	const MeshedField&         best,
+	double                     bestMiss,
+	const FieldMeshingOptions& options)
+{
+	if (next.arrangement.lostComponents != best.arrangement.lostComponents)
+		return next.arrangement.lostComponents < best.arrangement.lostComponents;
+	const double nextExcess = std::max(0.0, miss - options.countTolerance),
+				 bestExcess = std::max(0.0, bestMiss - options.countTolerance);
+	if (nextExcess != bestExcess)
+		return nextExcess < bestExcess;
+	return next.otherFaces + next.turnedOver + next.far <=
+	       best.otherFaces + best.turnedOver + best.far;
+}
+
+} // namespace
+
+MeshedField meshOfField(
+	Scaffold                   scaffold,
+	const std::vector<Rim>&    rims,
+	const CurvatureField&      curvature,
+	const FieldMeshingOptions& options,
+	const Progress&            progress)
+{
+	FieldMeshingOptions forPass    = options;
+	double&             target     = forPass.density.targetVertices;
+	Index               dropped    = options.closed ? dropShortCreases(scaffold) : 0;
+	Directions          directions = directionsOf(scaffold, rims, curvature, forPass);
+	// The same in all passes, so that they can be compared.
+	SizeFeedbackOptions feedback;
+	feedback.acceptedLength = acceptedDistance(scaffold);
+	MeshedField best;
+	double      bestMiss = INFINITY, denser = 1.0;
+	for (int pass = 0; pass < mostPasses; ++pass) {
+		progress.report(double(pass) / mostPasses);
+		std::vector<Index> turnedOver;
+		MeshedField        next =
+			meshOnce(scaffold, directions, denser, forPass, options.closed, turnedOver);
+		const double ratio      = next.arrangement.mesh.vertexCount() / target;
+		const double miss       = ratio > 0.0 ? std::max(ratio, 1.0 / ratio) - 1.0 : INFINITY;
+		next.droppedCreaseEdges = dropped;
+		const Index  more       = options.closed ? dropCreasesAt(turnedOver, scaffold) : 0;
+		const double before     = neededVertices(scaffold);
+		const Index  far =
+            options.closed ? shrinkSizesWhereFar(next.arrangement.mesh, scaffold, feedback) : 0;
+		next.far = far;
+		if (pass == 0 || isBetter(next, miss, best, bestMiss, options)) {
+			best     = std::move(next);
+			bestMiss = miss;
+		}
+		const bool again = pass == 0 ? more > 0 || far > 0 || miss > options.countTolerance
+		                             : best.turnedOver > 0 && more > 0;
+		if (!(ratio > 0.0) || !again)
+			break;
+		if (miss > options.countTolerance)
+			denser /= std::sqrt(ratio);
+		if (!options.holdTarget)
+			target += neededVertices(scaffold) - before;
+		if (more > 0) {
+			dropped += more + dropShortCreases(scaffold);
+			directions = directionsOf(scaffold, rims, curvature, forPass);
+		}
+		else
+			directions.density =
+				lineDensity(scaffold, directions.field, curvature, forPass.density);
+	}
+	// Lines that may end go where closed ones found no room.
+	if (options.closed && best.arrangement.lostComponents > 0) {
+		std::vector<Index> turnedOver;
+		MeshedField open = meshOnce(scaffold, directions, denser, forPass, false, turnedOver);
+		open.droppedCreaseEdges = dropped;
+		if (open.arrangement.lostComponents < best.arrangement.lostComponents)
+			return open;
+	}
+	return best;
+}
+
+} // namespace curvature_lines

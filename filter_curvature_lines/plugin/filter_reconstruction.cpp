@@ -32,6 +32,38 @@ struct Options {
 	bool                  keepIntermediateLayers = false;
 };
 
+void positionFieldParameters(ParameterTable& table, ReconstructionOptions& pipeline)
+{
+	table.row(
+		"anisotropy",
+		pipeline.anisotropy,
+		Real{1.0, 10.0},
+		"Anisotropy (1: square faces)",
+		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; "
+		"1 = "
+		"not at all).");
+	table.row(
+		"points_per_vertex",
+		pipeline.pointsPerVertex,
+		Real{0.0, 1e6},
+		"Points used per vertex (0: all)",
+		"Position Field with a target number of vertices: a cloud with more points per vertex is "
+		"thinned to so "
+		"many, evenly and not below 20000 points, once its outliers are out (0 = use all points, "
+		"which takes "
+		"longer). Keep all to have all in the cleaned cloud.",
+		advancedParameter);
+	table.row(
+		"hole_size",
+		pipeline.holeSize,
+		Real{1.0, 1000.0},
+		"Size of closed holes (spacings)",
+		"Position Field: gaps of the cloud up to so many point spacings across are closed (1 to "
+		"1000); wider ones get a rim. Less than 8 may open sparse parts; holes smaller than about "
+		"two edges of the mesh cannot be seen in it.",
+		advancedParameter);
+}
+
 void parameters(ParameterTable& table, Options& options)
 {
 	ReconstructionOptions& pipeline = options.pipeline;
@@ -62,25 +94,7 @@ void parameters(ParameterTable& table, Options& options)
 		"Sets the density of the lines if no target number is given: how far the chord between two "
 		"lines leaves the surface, as a fraction of the bounding-box diagonal (0 = automatic, at "
 		"most 0.5).");
-	table.row(
-		"anisotropy",
-		pipeline.anisotropy,
-		Real{1.0, 10.0},
-		"Anisotropy (1: square faces)",
-		"Position Field: by how much lines may run closer across strong bends than along (1 to 10; "
-		"1 = "
-		"not at all).");
-	table.row(
-		"points_per_vertex",
-		pipeline.pointsPerVertex,
-		Real{0.0, 1e6},
-		"Points used per vertex (0: all)",
-		"Position Field with a target number of vertices: a cloud with more points per vertex is "
-		"thinned to so "
-		"many, evenly and not below 20000 points, once its outliers are out (0 = use all points, "
-		"which takes "
-		"longer). Keep all to have all in the cleaned cloud.",
-		advancedParameter);
+	positionFieldParameters(table, pipeline);
 	meshParameters(table, pipeline.mesh);
 	table.row(
 		"reject_outliers",
@@ -158,6 +172,11 @@ void reportStages(FilterResults& results, const ReconstructionResult& result)
 	results.count("creases", static_cast<Index>(result.creases.curves.size()));
 	results.count("cones", result.mesh.singularTriangles);
 	results.count("line_ends", result.mesh.lineEnds);
+	results.count("inverted_repaired", result.mesh.turnedOver);
+	results.real(
+		"quad_share",
+		double(result.mesh.topology.quads) /
+			std::max<double>(1.0, double(result.mesh.topology.faces)));
 	results.count("scaffold_vertices", result.mesh.scaffoldVertices);
 	results.count("lost_crease_edges", result.mesh.lostCreaseEdges);
 	results.count("filled_holes", result.mesh.filledHoles);

@@ -77,6 +77,18 @@ void umbilicParameter(ParameterTable& table, UmbilicOptions& options)
 void meshParameters(ParameterTable& table, MeshFinishingOptions& options)
 {
 	table.row(
+		"quads",
+		options.quads,
+		Choice{{"Pure", "Dominant", "Subdivided"}},
+		"Quads",
+		"Which faces the mesh has.<ul>"
+		"<li><b>Pure</b>: quads only, with few irregular vertices</li>"
+		"<li><b>Dominant</b>: quads, and triangles and pentagons where lines end, which follow the "
+		"directions most "
+		"closely</li>"
+		"<li><b>Subdivided</b>: quads only, from a coarser mesh, each of whose faces is divided "
+		"from its centre</li></ul>");
+	table.row(
 		"triangulate",
 		options.triangulate,
 		Flag(),

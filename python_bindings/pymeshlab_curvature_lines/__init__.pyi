@@ -206,6 +206,7 @@ class MeshSet(pymeshlab.MeshSet):
         self,
         *,
         point_cloud: int = ...,
+        quads: Literal["Pure", "Dominant", "Subdivided"] = "Dominant",
         triangulate: bool = False,
         close_holes: bool = False,
         split_concave: bool = True,
@@ -214,6 +215,10 @@ class MeshSet(pymeshlab.MeshSet):
 
         point_cloud: The layer the lines were traced on. It is found by itself when the lines were traced in this
             session.
+
+        quads: Which faces the mesh has. Pure: quads only, with few irregular vertices; Dominant: quads, and triangles
+            and pentagons where lines end, which follow the directions most closely; Subdivided: quads only, from a
+            coarser mesh, each of whose faces is divided from its centre
 
         triangulate: Cut all faces into triangles, for programs that know no others.
 
@@ -230,6 +235,8 @@ class MeshSet(pymeshlab.MeshSet):
         epsilon: float = 0.0,
         anisotropy: float = 1.5,
         points_per_vertex: float = 24.0,
+        hole_size: float = 8.0,
+        quads: Literal["Pure", "Dominant", "Subdivided"] = "Pure",
         triangulate: bool = False,
         close_holes: bool = False,
         reject_outliers: bool = True,
@@ -257,6 +264,14 @@ class MeshSet(pymeshlab.MeshSet):
         points_per_vertex: Position Field with a target number of vertices: a cloud with more points per vertex is
             thinned to so many, evenly and not below 20000 points, once its outliers are out (0 = use all points, which
             takes longer). Keep all to have all in the cleaned cloud.
+
+        hole_size: Position Field: gaps of the cloud up to so many point spacings across are closed (1 to 1000); wider
+            ones get a rim. Less than 8 may open sparse parts; holes smaller than about two edges of the mesh cannot be
+            seen in it.
+
+        quads: Which faces the mesh has. Pure: quads only, with few irregular vertices; Dominant: quads, and triangles
+            and pentagons where lines end, which follow the directions most closely; Subdivided: quads only, from a
+            coarser mesh, each of whose faces is divided from its centre
 
         triangulate: Cut all faces into triangles, for programs that know no others.
 

@@ -21,6 +21,7 @@ from .progress import progress_bar
 from .report import number, write_report
 
 METHODS = {"position-field": "Position Field", "traced-lines": "Traced Lines"}
+QUADS = {"pure": "Pure", "dominant": "Dominant", "subdivided": "Subdivided"}
 NORMALS = {"if-missing": "If Missing", "never": "Never", "always": "Always"}
 # What PyMeshLab reads that holds points.
 SUFFIXES = ".ply .obj .off .stl .xyz .pts .ptx .asc .e57 .3ds .3mf .gts .ctm .dae .vmi .wrl .gltf .glb".split()
@@ -101,6 +102,12 @@ def parser() -> argparse.ArgumentParser:
         choices=METHODS,
         default="position-field",
         help="position-field (default): most quads, certain topology; traced-lines: as published",
+    )
+    mesh.add_argument(
+        "--quads",
+        choices=QUADS,
+        default="pure",
+        help="pure (default): quads only; dominant: and other faces where lines end; subdivided: a coarser mesh, divided",
     )
     mesh.add_argument(
         "--triangulate", action="store_true", help="triangles instead of polygons; the output may then be any format"
@@ -203,6 +210,7 @@ def _run(job: Job, options: argparse.Namespace) -> None:
         "reject_outliers": not options.no_outliers,
         "denoise": not options.no_denoise,
         "smooth_directions": not options.no_smoothing,
+        "quads": QUADS[options.quads],
         "triangulate": options.triangulate,
         "close_holes": options.close_holes,
         "scale_mode": "Adaptive",

@@ -28,7 +28,7 @@ from helpers import (
 )
 
 Filter = namedtuple("Filter", "menu_name, parameters")
-Choice = namedtuple("Choice", "labels")  # an enum; its first label is the default
+Choice = namedtuple("Choice", "labels, default", defaults=[0])  # an enum; default: index of a label
 Number = namedtuple("Number", "default, other")
 Flag = namedtuple("Flag", "default")
 Layer = namedtuple("Layer", "default, other")  # id of a layer of document()
@@ -38,6 +38,7 @@ Point = namedtuple("Point", "default, other")
 
 SCALARS = Choice(["Mean", "Gaussian", "K1", "K2", "Curvedness", "Shape Index", "Confidence"])
 SCALES = Choice(["Adaptive", "Paper"])
+QUADS = ["Pure", "Dominant", "Subdivided"]
 CLOUD, OTHER_CLOUD, LINES = range(3)  # the layers of document()
 
 CONTRACT = {
@@ -66,11 +67,12 @@ CONTRACT = {
         "min_angle": Number(30.0, 40.0), "spacing": Number(0.0, 0.03), "denoise": Flag(True),
     }),
     MESH: Filter("Build Curvature-Aligned Quad Mesh", {
-        "point_cloud": Layer(CLOUD, OTHER_CLOUD), "triangulate": Flag(False), "close_holes": Flag(False), "split_concave": Flag(True),
+        "point_cloud": Layer(CLOUD, OTHER_CLOUD), "quads": Choice(QUADS, default=1), "triangulate": Flag(False), "close_holes": Flag(False), "split_concave": Flag(True),
     }),
     PIPELINE: Filter("Surface Reconstruction: Curvature-Aligned Quads", {
         "method": Choice(["Position Field", "Traced Lines"]), "target_vertices": Number(0, 80), "epsilon": Number(0.0, 0.01),
-        "anisotropy": Number(1.5, 1.2), "points_per_vertex": Number(24.0, 12.0), "triangulate": Flag(False), "close_holes": Flag(False),
+        "anisotropy": Number(1.5, 1.2), "points_per_vertex": Number(24.0, 12.0), "hole_size": Number(8.0, 4.0),
+        "quads": Choice(QUADS), "triangulate": Flag(False), "close_holes": Flag(False),
         "reject_outliers": Flag(True), "denoise": Flag(True), "smooth_directions": Flag(True),
         "estimate_normals": Choice(["If Missing", "Never", "Always"]), "scale_mode": SCALES, "keep_intermediate_layers": Flag(False),
     }),

@@ -28,6 +28,7 @@ NOTHING_OF_THEIR_OWN = {
     "cleaning/outlier_result",
     "fitting/monomials",
     "lines/line_crossing",
+    "position_field/phase_pins",
 }
 
 

@@ -52,7 +52,7 @@ def test_names_defaults_and_labels_are_those_of_the_contract(name):
         assert script["type"] in KINDS[type(expected)], key
         if isinstance(expected, Choice):
             assert [script[f"enum_val{k}"] for k in range(int(script["enum_cardinality"]))] == expected.labels, key
-            assert script["value"] == "0", key
+            assert script["value"] == str(expected.default), key
         elif isinstance(expected, Color):
             assert written(expected, pymeshlab.Color(*expected.default), script), key
         elif not isinstance(expected, File):

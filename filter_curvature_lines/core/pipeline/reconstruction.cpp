@@ -87,7 +87,12 @@ adaptiveRecipe(CloudIndex given, const ReconstructionOptions& options, const Pro
 	clock.book("umbilics");
 	FieldMesh mesh = meshOfPositionField(
 		surface,
-		{options.creases, options.tracing, options.anisotropy, options.mesh, options.keepLines},
+		{options.creases,
+	     options.tracing,
+	     options.anisotropy,
+	     options.mesh,
+	     options.keepLines,
+	     options.holeSize},
 		clock,
 		progress.sub(0.65, 0.98, ""));
 

@@ -21,6 +21,7 @@
 #include "point_cloud.h"
 #include "position_field_mesh.h"
 #include "progress.h"
+#include "scaffold.h"
 #include "umbilics.h"
 
 namespace curvature_lines {
@@ -45,7 +46,9 @@ struct ReconstructionOptions {
 	// below 20 000 points, once the outliers are out. 0: all are used.
 	double pointsPerVertex = 24.0;
 	// PositionField: largest ratio of the line spacings in a place
-	double               anisotropy = 1.5;
+	double anisotropy = 1.5;
+	// PositionField: holes of the cloud this wide are closed, in its spacings
+	double               holeSize = usualHoleSize;
 	MeshFinishingOptions mesh;
 	// PositionField: its lines as polylines; traced ones are always kept
 	bool keepLines = false;
@@ -55,6 +58,7 @@ struct ReconstructionOptions {
 		tracing.epsilon    = 0.0;
 		tracing.stopFactor = meshStopFactor;
 		tracing.gradation  = meshGradation;
+		mesh.quads         = QuadKind::Pure;
 	}
 };
 

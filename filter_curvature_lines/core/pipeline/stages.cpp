@@ -289,8 +289,9 @@ FieldMesh meshOfPositionField(
 	meshing.noise          = surface.noise;
 	meshing.mesh           = options.mesh;
 	meshing.keepLines      = options.keepLines;
-	const double edge      = std::sqrt(areaOf(index.minimum()) / meshing.targetVertices);
-	result.mesh            = buildPositionFieldMesh(
+	meshing.scaffold.holeSize = options.holeSize;
+	const double edge         = std::sqrt(areaOf(index.minimum()) / meshing.targetVertices);
+	result.mesh               = buildPositionFieldMesh(
         index,
         surface.field,
         featuresOf(result.creases, edge),

@@ -22,6 +22,7 @@
 #include "point_cloud.h"
 #include "position_field_mesh.h"
 #include "progress.h"
+#include "scaffold.h"
 #include "umbilics.h"
 #include "voronoi_cells.h"
 
@@ -121,7 +122,8 @@ struct FieldMeshOptions {
 	LineTracingOptions   tracing; // targetVertices, or epsilon, or from the size of the cloud
 	double               anisotropy = 1.5; // largest ratio of the line spacings in a place
 	MeshFinishingOptions mesh;
-	bool                 keepLines = false; // as polylines, beside the mesh
+	bool                 keepLines = false;         // as polylines, beside the mesh
+	double               holeSize  = usualHoleSize; // ScaffoldOptions::holeSize
 };
 
 struct FieldMesh {

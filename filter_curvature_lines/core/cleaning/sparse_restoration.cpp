@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_restoration.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "neighborhoods.h"
+#include "outlier_voter.h"
 #include "point_cloud.h"
 #include "progress.h"
 #include "quantile.h"

@@ -1,12 +1,15 @@
-// Smart Laplacian smoothing (Freitag 1997) of the vertices of unsound faces, each step projected onto the surface.
+// Smart Laplacian smoothing (Freitag 1997) of the vertices of bad faces, and where that does not help a search around them;
+// each step is projected onto the surface.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "face_untangling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "cloud_index.h"
 #include "curvature_field.h"
@@ -22,13 +25,18 @@ namespace {
 using Eigen::Vector3d;
 
 // Faces below this scaled Jacobian are unsound: with a corner of more than 174 degrees, or turned over.
-constexpr double sound  = 0.1;
-constexpr int    rounds = 8;
+constexpr double sound = 0.1;
+// Those below this one are worth a try.
+constexpr double wanted = 0.3;
+constexpr int    rounds = 16;
 // Of the worst scaled Jacobian around a vertex that moves: more than rounding, which would follow the order of the points
 // where the worst corner is one that the move leaves alone.
 constexpr double leastGain = 1e-3;
 // Shares of the way to the mean of the neighbours that are tried.
 constexpr double shares[] = {1.0, 0.5, 0.25};
+// And steps in so many directions around, in mean edges.
+constexpr int    directions = 8;
+constexpr double steps[]    = {0.3, 0.1};
 
 class Untangling {
 public:
@@ -47,7 +55,7 @@ public:
 
 	Index run()
 	{
-		std::vector<Index> bad = unsound();
+		std::vector<Index> bad = below(wanted);
 		for (int round = 0; round < rounds && !bad.empty(); ++round) {
 			std::vector<char> asked(m_mesh.vertexCount(), 0);
 			bool              moved = false;
@@ -55,19 +63,19 @@ public:
 				for (const Index v : m_mesh.faces[f])
 					if (!m_fixed[v] && !std::exchange(asked[v], 1))
 						moved = improve(v) || moved;
-			bad = unsound();
 			if (!moved)
 				break;
+			bad = below(wanted);
 		}
-		return static_cast<Index>(bad.size());
+		return static_cast<Index>(below(sound).size());
 	}
 
 private:
-	std::vector<Index> unsound() const
+	std::vector<Index> below(double bound) const
 	{
 		std::vector<Index> bad;
 		for (Index f = 0; f < m_mesh.faceCount(); ++f)
-			if (scaledJacobian(m_mesh, f) < sound)
+			if (scaledJacobian(m_mesh, f) < bound)
 				bad.push_back(f);
 		return bad;
 	}
@@ -99,22 +107,54 @@ private:
 		const Vector3d position = m_mesh.vertices.col(v), normal = m_mesh.normals.col(v);
 		const Vector3d mean   = meanOfNeighbors(v);
 		const double   before = worstAround(v);
-		for (const double share : shares) {
-			const Vector3d      p      = position + share * (mean - position);
-			const SurfaceSample sample = projectToSurface(
-				m_index.cloud(),
-				m_curvature,
-				p,
-				closestOnSide(m_index, p, normal),
-				ProjectionKind::Mixed);
-			m_mesh.vertices.col(v) = sample.position;
-			m_mesh.normals.col(v)  = sample.normal;
-			if (worstAround(v) > before + leastGain)
+		if (before >= wanted)
+			return false;
+		for (const double share : shares)
+			if (isBetterAt(v, position + share * (mean - position), before, position, normal))
 				return true;
-		}
+		const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
+		const double   edge = meanEdge(v);
+		for (const double step : steps)
+			for (int k = 0; k < directions; ++k) {
+				const double   angle = 2.0 * double(EIGEN_PI) * k / directions;
+				const Vector3d p =
+					position + step * edge * (std::cos(angle) * x + std::sin(angle) * y);
+				if (isBetterAt(v, p, before, position, normal))
+					return true;
+			}
+		return false;
+	}
+
+	// Moves v to p, on the surface, or leaves it with its position and normal.
+	bool isBetterAt(
+		Index v, const Vector3d& p, double before, const Vector3d& position, const Vector3d& normal)
+	{
+		const SurfaceSample sample = projectToSurface(
+			m_index.cloud(),
+			m_curvature,
+			p,
+			closestOnSide(m_index, p, normal),
+			ProjectionKind::Mixed);
+		m_mesh.vertices.col(v) = sample.position;
+		m_mesh.normals.col(v)  = sample.normal;
+		if (worstAround(v) > before + leastGain)
+			return true;
 		m_mesh.vertices.col(v) = position;
 		m_mesh.normals.col(v)  = normal;
 		return false;
+	}
+
+	double meanEdge(Index v) const
+	{
+		double sum = 0.0;
+		for (const Index f : m_faces[v]) {
+			const NeighborLists::Row face = m_mesh.faces[f];
+			const auto               at =
+				static_cast<Index>(std::find(face.begin(), face.end(), v) - face.begin());
+			sum +=
+				(m_mesh.vertices.col(face[(at + 1) % face.size()]) - m_mesh.vertices.col(v)).norm();
+		}
+		return sum / double(m_faces[v].size());
 	}
 
 	const CloudIndex&               m_index;

@@ -11,7 +11,6 @@
 #include "cross_field.h"
 #include "phase_pins.h"
 #include "point_cloud.h"
-#include "position_field.h"
 #include "rims.h"
 #include "scaffold.h"
 #include "triangle_mesh.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>

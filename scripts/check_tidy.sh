@@ -22,7 +22,9 @@ sed "s/, __malloc__ (omp_free)//; s/__malloc__ (omp_free), //" "$(g++ -print-fil
 
 files=("$@")
 if [ ${#files[@]} -eq 0 ]; then
-	mapfile -t files < <(find filter_curvature_lines sample_data tests -name '*.h' -o -name '*.cpp' | sort)
+	# One file less: CGAL 5.5's boost/graph/iterator.h, which it includes, is refused by clang 19 and later.
+	mapfile -t files < <(find filter_curvature_lines sample_data tests \( -name '*.h' -o -name '*.cpp' \) \
+		! -name advancing_front.cpp | sort)
 	[ ${#files[@]} -gt 100 ] || fail "found only ${#files[@]} files"
 fi
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/release --quiet --warnings-as-errors='*' \

@@ -37,6 +37,8 @@ constexpr double shares[] = {1.0, 0.5, 0.25};
 // And steps in so many directions around, in mean edges.
 constexpr int    directions = 8;
 constexpr double steps[]    = {0.3, 0.1};
+// In mean edges: projections go no farther.
+constexpr double farthest = 0.3;
 
 class Untangling {
 public:
@@ -137,7 +139,9 @@ private:
 			ProjectionKind::Mixed);
 		m_mesh.vertices.col(v) = sample.position;
 		m_mesh.normals.col(v)  = sample.normal;
-		if (worstAround(v) > before + leastGain)
+		// Onto another part of the surface is no step.
+		if ((sample.position - p).norm() < farthest * meanEdge(v) &&
+		    worstAround(v) > before + leastGain)
 			return true;
 		m_mesh.vertices.col(v) = position;
 		m_mesh.normals.col(v)  = normal;

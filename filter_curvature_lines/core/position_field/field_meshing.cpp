@@ -36,6 +36,10 @@ namespace curvature_lines {
 namespace {
 
 constexpr int mostPasses = 3;
+// Vertices of a first pass over those asked for, below which its lines have gone astray.
+constexpr double leastRatio = 0.75;
+// In cells, of paths of the flow: after that, and what it does not join remains a line that ends.
+constexpr double shortPath = 4.0;
 
 // What a pass starts from.
 struct Directions {
@@ -160,6 +164,7 @@ MeshedField meshOfField(
 	feedback.acceptedLength = acceptedDistance(scaffold);
 	MeshedField best;
 	double      bestMiss = INFINITY, denser = 1.0;
+	bool        astray = false;
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		progress.report(double(pass) / mostPasses);
 		std::vector<Index> turnedOver;
@@ -178,10 +183,17 @@ MeshedField meshOfField(
 			bestMiss = miss;
 		}
 		const bool again = pass == 0 ? more > 0 || far > 0 || miss > options.countTolerance
-		                             : best.turnedOver > 0 && more > 0;
+		                             : (best.turnedOver > 0 && more > 0) ||
+		                                   (astray && miss > options.countTolerance);
 		if (!(ratio > 0.0) || !again)
 			break;
-		if (miss > options.countTolerance)
+		// Closed lines run on to where they meet others: on a cone, which has fewer and fewer around, there may be no others
+		// but those on its far side, and most lines go. Then some have to end.
+		if (options.closed && ratio < leastRatio) {
+			astray                       = true;
+			forPass.closing.flow.longest = shortPath;
+		}
+		else if (miss > options.countTolerance)
 			denser /= std::sqrt(ratio);
 		if (!options.holdTarget)
 			target += neededVertices(scaffold) - before;

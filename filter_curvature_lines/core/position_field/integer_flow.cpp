@@ -88,7 +88,7 @@ public:
 			if (!isSource(t, q))
 				continue;
 			const Way way = shortestFrom(t, q);
-			if (way.state < 0)
+			if (way.state < 0 || way.cost > m_options.longest)
 				continue;
 			if (way.cost > cost + sameCost) { // by now others may be closer
 				sources.emplace(way.cost, t, q);
@@ -201,7 +201,7 @@ private:
 			open.pop();
 			if (cost > m_reached[state].cost)
 				continue;
-			if (cost >= best.cost)
+			if (cost >= best.cost || cost > m_options.longest)
 				break;
 			const Index t = state / states;
 			const int   q = state % states;

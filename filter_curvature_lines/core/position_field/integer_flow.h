@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,6 +25,8 @@ struct IntegerFlowOptions {
 	double along = 1.0 / 3.0;
 	// Cost of turning at a singular point, where a line of one family goes on as the other, in cells.
 	double atSingular = 0.5;
+	// Of a path, in cells; what needs a longer one stays as it is.
+	double longest = std::numeric_limits<double>::infinity();
 	// Of vertices on thin limbs: a path along one takes away one of its few lines; too many, and the limb is gone (a
 	// chameleon's tongue). Empty: there are none; and how much longer paths there count.
 	std::vector<char> onLimb;

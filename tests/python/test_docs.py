@@ -51,6 +51,9 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         "largest_gap",
         "folded_faces",
         "limb_vertices",
+        "quad_share",
+        "cones",
+        "inverted_repaired",
         "dropped_components",
         "warnings",
     }  # returned

@@ -167,10 +167,11 @@ PositionFieldMeshResult buildPositionFieldMesh(
 	progress.report(0.4);
 	MeshedField meshed =
 		meshOfField(scaffold, rims, curvature, forMeshing, progress.sub(0.4, 0.9, "Laying lines"));
-	result.singularTriangles  = meshed.singularTriangles;
-	result.lineEnds           = meshed.lineEnds;
-	result.turnedOver         = meshed.turnedOver;
-	result.otherFaces         = meshed.otherFaces;
+	result.singularTriangles = meshed.singularTriangles;
+	result.lineEnds          = meshed.lineEnds;
+	result.turnedOver        = meshed.turnedOver;
+	result.otherFaces        = meshed.otherFaces;
+	result.lostCreaseEdges += meshed.droppedCreaseEdges; // the mesh does not show them either
 	result.crossings          = meshed.arrangement.crossings;
 	result.repairedComponents = meshed.arrangement.repairedComponents;
 	result.droppedComponents += meshed.arrangement.lostComponents;

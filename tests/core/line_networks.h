@@ -11,7 +11,6 @@
 
 #include "analytic_surfaces.h"
 #include "line_network.h"
-#include "line_tracing.h"
 #include "point_cloud.h"
 
 namespace curvature_lines::tests {

@@ -4,9 +4,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "block_size.h"
-#include "monomials.h"
-
 namespace curvature_lines {
 
 // Arrays go into the kernels as pointers, and nothing here needs a type of another library: code of the standard

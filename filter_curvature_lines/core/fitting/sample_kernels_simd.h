@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
+#include "block_size.h"
+#include "monomials.h"
 #include "sample_kernels.h"
 #include "simd_block.h"
 
@@ -282,6 +285,7 @@ void gaussianWeights(
 }
 
 // All of them for one instruction set: `extern` where they are called, nothing where they are compiled.
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are `extern` and a type.
 // clang-format off
 #define CURVATURE_LINES_SAMPLE_KERNELS(EXTERN, ARCH) \
 	EXTERN template Moments<1, 1> momentsOf<ARCH, 1, 1>(const SampleColumns<1>&); \
@@ -306,5 +310,6 @@ void gaussianWeights(
 	EXTERN template void gaussianWeights<ARCH>( \
 		const double*, const double*, double, double, int, double*);
 // clang-format on
+// NOLINTEND(bugprone-macro-parentheses)
 
 } // namespace curvature_lines::simd

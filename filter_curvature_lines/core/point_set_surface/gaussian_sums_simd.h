@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "block_size.h"
 #include "gaussian_sums.h"
+#include "sample_kernels.h"
 #include "simd_block.h"
 
 namespace curvature_lines::simd {
@@ -132,6 +134,7 @@ EulerMoments eulerMomentsOf(const SampleColumns<1>& samples)
 }
 
 // All of them for one instruction set: `extern` where they are called, nothing where they are compiled.
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are `extern` and a type.
 // clang-format off
 #define CURVATURE_LINES_GAUSSIAN_SUMS(EXTERN, ARCH) \
 	EXTERN template GaussianNormalSums gaussianNormalSums<ARCH>(const ControlColumns&, const double*, double); \
@@ -140,5 +143,6 @@ EulerMoments eulerMomentsOf(const SampleColumns<1>& samples)
 		const ControlColumns&, const FrameColumns&, double, const SampleColumns<1>&); \
 	EXTERN template EulerMoments eulerMomentsOf<ARCH>(const SampleColumns<1>&);
 // clang-format on
+// NOLINTEND(bugprone-macro-parentheses)
 
 } // namespace curvature_lines::simd

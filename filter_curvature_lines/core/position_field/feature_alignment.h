@@ -9,7 +9,6 @@
 
 #include "cross_field.h"
 #include "phase_pins.h"
-#include "position_field.h"
 #include "rims.h"
 #include "scaffold.h"
 #include "surface_graph.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "point_cloud.h"
 #include "scaffold.h"
 
 namespace curvature_lines {

@@ -8,7 +8,6 @@
 
 #include "cloud_index.h"
 #include "curvature_field.h"
-#include "point_cloud.h"
 #include "progress.h"
 
 namespace curvature_lines {

@@ -24,6 +24,14 @@ namespace curvature_lines::test {
 
 using VertexLoop = std::vector<Index>;
 
+// Seen from above: every vertex has the normal z.
+inline PolygonMesh
+flatPolygons(const std::vector<Eigen::Vector3d>& vertices, const std::vector<VertexLoop>& loops)
+{
+	return polygonMesh(
+		vertices, std::vector<Eigen::Vector3d>(vertices.size(), Eigen::Vector3d::UnitZ()), loops);
+}
+
 inline PolygonMesh polygonsOf(const TriangleMesh& mesh)
 {
 	std::vector<VertexLoop> loops;

@@ -115,6 +115,27 @@ LinkedFaces::Loop LinkedFaces::loopFrom(Index side) const
 	return loop;
 }
 
+std::vector<Vector3d> LinkedFaces::positionsOf(const Loop& loop) const
+{
+	std::vector<Vector3d> positions;
+	for (const Index v : loop)
+		positions.push_back(position(v));
+	return positions;
+}
+
+Vector3d LinkedFaces::normalOf(const Loop& loop) const
+{
+	Vector3d sum = Vector3d::Zero();
+	for (const Index v : loop)
+		sum += normal(v);
+	return sum.normalized();
+}
+
+Vector3d LinkedFaces::middleOf(Index side) const
+{
+	return 0.5 * (position(from(side)) + position(to(side)));
+}
+
 Index LinkedFaces::addVertex(const Vector3d& position, const Vector3d& normalSum, Index like)
 {
 	m_vertices.push_back(position);
@@ -128,8 +149,7 @@ Index LinkedFaces::addVertex(const Vector3d& position, const Vector3d& normalSum
 Index LinkedFaces::addMiddle(Index side)
 {
 	const Index a = from(side), b = to(side);
-	const Index middle =
-		addVertex(0.5 * (m_vertices[a] + m_vertices[b]), m_normals[a] + m_normals[b], a);
+	const Index middle = addVertex(middleOf(side), m_normals[a] + m_normals[b], a);
 	m_onFeature[middle] =
 		m_onFeature[a] && m_onFeature[b] && (isFeature(side) || across(side) == rim);
 	return middle;

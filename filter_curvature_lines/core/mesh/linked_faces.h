@@ -66,6 +66,9 @@ public:
 
 	// The vertices of a face, from the start of one of its sides.
 	Loop loopFrom(Index side) const;
+	std::vector<Eigen::Vector3d> positionsOf(const Loop& loop) const;
+	Eigen::Vector3d normalOf(const Loop& loop) const; // unit: the mean of its vertices' normals
+	Eigen::Vector3d middleOf(Index side) const;
 
 	// In the middle of a side: on a feature if the edge runs along one (a rim does if its ends are marked).
 	Index addMiddle(Index side);

@@ -60,7 +60,7 @@ PolygonMesh floorWith(Index cells, const std::vector<Index>& cut)
 		loops.push_back({a, b, c});
 		loops.push_back({a, c, d});
 	}
-	return polygonMesh(vertices, std::vector<Vector3d>(vertices.size(), Vector3d::UnitZ()), loops);
+	return flatPolygons(vertices, loops);
 }
 
 double leastJacobian(const PolygonMesh& mesh)
@@ -217,8 +217,7 @@ TEST(QuadCompletion, ASingleOddFaceEndsAtARim)
 			if (ring < rings)
 				loops.push_back({v, v + 3, next + 3, next});
 		}
-	const PolygonMesh mesh =
-		polygonMesh(vertices, std::vector<Vector3d>(vertices.size(), Vector3d::UnitZ()), loops);
+	const PolygonMesh    mesh   = flatPolygons(vertices, loops);
 	const QuadCompletion result = completed(mesh);
 	EXPECT_EQ(result.paths, 0);
 	EXPECT_EQ(result.rimPaths, 1);

@@ -155,6 +155,20 @@ struct RigidMotion {
 		return (rotation * p).colwise() + translation;
 	}
 	Eigen::Matrix3Xd ofVectors(const Eigen::Matrix3Xd& v) const { return rotation * v; }
+
+	// `scale` times as large, too.
+	TriangulatedSurface of(TriangulatedSurface surface, double scale) const
+	{
+		samples::GroundTruth& truth = surface.truth;
+		surface.mesh.vertices       = scale * ofPoints(surface.mesh.vertices);
+		truth.footPoints            = scale * ofPoints(truth.footPoints);
+		truth.normals               = ofVectors(truth.normals);
+		truth.d1                    = ofVectors(truth.d1);
+		truth.d2                    = ofVectors(truth.d2);
+		truth.k1 /= scale;
+		truth.k2 /= scale;
+		return surface;
+	}
 };
 
 } // namespace curvature_lines::test

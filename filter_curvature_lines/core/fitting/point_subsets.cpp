@@ -24,6 +24,28 @@ constexpr double samplesPerBall = 256.0;
 // Each subset has a tree of its own. Balls of 64 x 256 points hold 8 % of a cloud of 200 000 points.
 constexpr Index maxSubsets = 64;
 
+// Distances differ from point to point, but not fast: a point twice as far from its neighbours is hardly ever among them.
+constexpr double gradedReach = 1.5;
+
+// In order: a point that is kept covers those within its reach for which `covers` says so.
+template<class Reach, class Covers>
+std::vector<Index> thinned(const PointSample& sample, const Reach& reach, const Covers& covers)
+{
+	const Index        n = sample.cloud.size();
+	std::vector<char>  covered(n, 0);
+	std::vector<Index> kept, found;
+	for (Index i = 0; i < n; ++i) {
+		if (covered[i])
+			continue;
+		kept.push_back(i);
+		sample.search.within(sample.cloud.positions.col(i), reach(i), found);
+		for (const Index j : found)
+			if (covers(i, j))
+				covered[j] = 1;
+	}
+	return kept;
+}
+
 } // namespace
 
 PointCloud blockOf(const PointCloud& cloud, Index from, Index to)
@@ -57,18 +79,18 @@ PointSubsets::PointSubsets(const PointSample& sample, double radius) : m_whole(s
 
 std::vector<Index> thin(const PointSample& sample, double distance)
 {
-	const Index        n = sample.cloud.size();
-	std::vector<char>  covered(n, 0);
-	std::vector<Index> kept, found;
-	for (Index i = 0; i < n; ++i) {
-		if (covered[i])
-			continue;
-		kept.push_back(i);
-		sample.search.within(sample.cloud.positions.col(i), distance, found);
-		for (const Index j : found)
-			covered[j] = 1;
-	}
-	return kept;
+	return thinned(sample, [&](Index) { return distance; }, [](Index, Index) { return true; });
+}
+
+std::vector<Index> thin(const PointSample& sample, const Eigen::VectorXd& distance)
+{
+	const Eigen::Matrix3Xd& at = sample.cloud.positions;
+	return thinned(
+		sample,
+		[&](Index i) { return gradedReach * distance[i]; },
+		[&](Index i, Index j) {
+			return (at.col(j) - at.col(i)).norm() < 0.5 * (distance[i] + distance[j]);
+		});
 }
 
 } // namespace curvature_lines

@@ -1,11 +1,12 @@
-// Random parts of a cloud with their search trees: what local fits take their points from.
-// Internal to adaptive_curvature.
+// Points with their search tree; random parts of them, from which local fits take their points; and thinning.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include <memory>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "neighborhoods.h"
 #include "point_cloud.h"
@@ -48,5 +49,7 @@ private:
 
 // Indices of points no two of which are nearer than `distance`, taken in order.
 std::vector<Index> thin(const PointSample& sample, double distance);
+// No two are nearer than the mean of their distances, which change slowly from point to point.
+std::vector<Index> thin(const PointSample& sample, const Eigen::VectorXd& distance);
 
 } // namespace curvature_lines

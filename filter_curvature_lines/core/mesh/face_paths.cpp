@@ -49,38 +49,30 @@ bool joinsTriangles(const LinkedFaces& faces, Index side)
 
 FacePath FacePathSearch::nearest(Index start, double reach)
 {
-	begin(start);
+	m_start    = start;
+	m_bestCost = infinity;
+	m_paths.start(m_faces.sideCount());
 	for (Index k = 0; k < m_faces.size(start); ++k) {
 		const Index side = m_faces.firstSide(start) + k;
 		leave(side, endCost(side), LinkedFaces::rim);
 	}
 	FacePath found;
-	while (!m_heap.empty()) {
-		const auto [cost, entered] = m_heap.top();
-		if (cost >= m_best.cost)
+	while (m_paths.isOpen()) {
+		const auto [cost, entered] = m_paths.nearest();
+		if (cost >= m_bestCost)
 			break;
 		if (cost > reach) {
 			found.endless = true;
 			break;
 		}
-		m_heap.pop();
-		if (cost == m_reached[entered].cost)
+		if (m_paths.take())
 			pass(entered);
 	}
-	if (m_best.cost == infinity || (found.endless && m_best.cost > reach))
+	if (m_bestCost == infinity || (found.endless && m_bestCost > reach))
 		return found;
-	found.cost  = m_best.cost;
+	found.cost  = m_bestCost;
 	found.sides = sidesOfBest();
 	return found;
-}
-
-void FacePathSearch::begin(Index start)
-{
-	m_start = start;
-	m_heap  = {};
-	m_best  = {};
-	++m_round;
-	m_reached.resize(m_faces.sideCount());
 }
 
 void FacePathSearch::pass(Index entered)
@@ -97,7 +89,7 @@ void FacePathSearch::pass(Index entered)
 		feature = feature || m_faces.isOnFeature(v);
 	}
 	const bool   isConvex = leastSine(at, normal) > 0.0;
-	const double cost     = m_reached[entered].cost;
+	const double cost     = m_paths.cost(entered);
 	for (Index k = 1; k < 4; ++k) {
 		double whole = cost;
 		if (k !=
@@ -129,18 +121,15 @@ void FacePathSearch::leave(Index side, double cost, Index entered)
 			cost = entered < 0 ? crossing + joinCost(side) : cost + endCost(there);
 		else
 			cost += rimCost + (entered < 0 && m_faces.size(m_start) == 3 ? flatCost : 0.0);
-		if (cost < m_best.cost) {
-			m_best = {cost, entered, m_round};
-			m_last = side;
+		if (cost < m_bestCost) {
+			m_bestCost    = cost;
+			m_bestEntered = entered;
+			m_last        = side;
 		}
 		return;
 	}
-	Reached& reached = m_reached[there];
-	if (m_faces.size(m_faces.faceOf(there)) != 4 ||
-	    (reached.round == m_round && reached.cost <= cost))
-		return;
-	reached = {cost, entered, m_round};
-	m_heap.emplace(cost, there);
+	if (m_faces.size(m_faces.faceOf(there)) == 4)
+		m_paths.reach(there, cost, entered);
 }
 
 double FacePathSearch::crossingCost(Index side) const
@@ -175,7 +164,7 @@ double FacePathSearch::joinCost(Index side) const
 std::vector<Index> FacePathSearch::sidesOfBest() const
 {
 	std::vector<Index> sides = {m_last};
-	for (Index entered = m_best.entered; entered >= 0; entered = m_reached[entered].entered)
+	for (Index entered = m_bestEntered; entered >= 0; entered = m_paths.before(entered))
 		sides.push_back(m_faces.across(entered));
 	std::reverse(sides.begin(), sides.end());
 	std::vector<std::pair<Index, std::size_t>> visits;

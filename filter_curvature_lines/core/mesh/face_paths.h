@@ -3,14 +3,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
 #include <limits>
-#include <queue>
-#include <utility>
 #include <vector>
 
 #include "linked_faces.h"
 #include "point_cloud.h"
+#include "shortest_paths.h"
 
 namespace curvature_lines {
 
@@ -38,15 +36,6 @@ public:
 	FacePath nearest(Index start, double reach);
 
 private:
-	// How a side was entered: from the face that was entered by another one.
-	struct Reached {
-		double cost    = std::numeric_limits<double>::infinity();
-		Index  entered = -1;
-		Index  round   = 0;
-	};
-	using Entry = std::pair<double, Index>; // cost, side entered
-
-	void begin(Index start);
 	void pass(Index entered);
 	// `entered`: the side that the face was entered by; rim: it is the first.
 	void leave(Index side, double cost, Index entered);
@@ -58,11 +47,13 @@ private:
 	// Every face once: where the path comes back to one, the round trip goes.
 	std::vector<Index> sidesOfBest() const;
 
-	const LinkedFaces&   m_faces;
-	Index                m_start = -1, m_last = -1, m_round = 0;
-	Reached              m_best;
-	std::vector<Reached> m_reached; // by the side entered
-	std::priority_queue<Entry, std::vector<Entry>, std::greater<>> m_heap;
+	const LinkedFaces& m_faces;
+	// Nodes: sides that faces are entered by; before: the one that the face before was entered by.
+	ShortestPaths m_paths;
+	Index         m_start = -1;
+	// The best path so far: its cost, how its last face is entered, and the side it is left by.
+	double m_bestCost    = std::numeric_limits<double>::infinity();
+	Index  m_bestEntered = -1, m_last = -1;
 };
 
 } // namespace curvature_lines

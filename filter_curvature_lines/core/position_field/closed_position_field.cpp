@@ -54,7 +54,7 @@ HeldIncreases holdAlongFeatures(
 		    !pins.fixed[familyBehind(field.turns[e], f).family][edge.to])
 			continue;
 		const Complex step =
-			positions.phase[edge.from] - turned(positions.phase[edge.to], -int(field.turns[e]));
+			positions.phase[edge.from] - phaseAtEnd(mesh, field, positions.phase, e);
 		Complex& n = positions.translations[e];
 		n          = f == 0 ? Complex(std::round(step.real()), n.imag())
 		                    : Complex(n.real(), std::round(step.imag()));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -18,6 +17,7 @@
 #include "cross_field.h"
 #include "line_density.h"
 #include "point_cloud.h"
+#include "shortest_paths.h"
 #include "transition_circuit.h"
 #include "triangle_mesh.h"
 
@@ -31,11 +31,6 @@ using Eigen::Vector3d;
 constexpr double sameCost = 1e-9;
 // Of every step, in cells: without it paths through triangles that no line crosses would wander.
 constexpr double leastStep = 1e-6;
-
-bool isOdd(double whole)
-{
-	return (std::lround(whole) & 1) != 0;
-}
 
 // One unit of lines, i^quarter in the frame of corner 0 of a triangle, is carried from triangle to triangle: the
 // translation of the side it leaves through changes by a unit, so that the sum of the triangle falls and that of the
@@ -70,7 +65,6 @@ public:
 					times * std::hypot(v, options.along * u) + leastStep};
 			}
 		}
-		m_reached.resize(static_cast<std::size_t>(states) * triangles);
 	}
 
 	IntegerFlow result()
@@ -120,11 +114,6 @@ private:
 		double cost  = std::numeric_limits<double>::infinity();
 		Index  state = -1; // where it ends
 		int    rim   = -1; // the side of its triangle that it leaves through
-	};
-	struct Reached {
-		double cost = 0.0;
-		Index  from = -1; // state
-		int    run  = 0;
 	};
 
 	bool isOnLimb(const Triangle& corners) const
@@ -184,22 +173,12 @@ private:
 
 	Way shortestFrom(Index start, int quarter)
 	{
-		++m_run;
-		using Item = std::pair<double, Index>; // cost, state
-		std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
-		const auto reach = [&](Index state, double cost, Index from) {
-			Reached& r = m_reached[state];
-			if (r.run == m_run && r.cost <= cost)
-				return;
-			r = {cost, from, m_run};
-			open.emplace(cost, state);
-		};
-		reach(states * start + quarter, 0.0, -1);
+		m_paths.start(states * m_mesh.triangleCount());
+		m_paths.reach(states * start + quarter, 0.0, -1);
 		Way best; // to a rim
-		while (!open.empty()) {
-			const auto [cost, state] = open.top();
-			open.pop();
-			if (cost > m_reached[state].cost)
+		while (m_paths.isOpen()) {
+			const auto [cost, state] = m_paths.nearest();
+			if (!m_paths.take())
 				continue;
 			if (cost >= best.cost || cost > m_options.longest)
 				break;
@@ -210,7 +189,8 @@ private:
 			if (m_circuit[t].index != 0)
 				for (int k = 1; k < states; ++k)
 					if (m_circuit[t].index != 2 || k == 2)
-						reach(states * t + ((q + k) & 3), cost + m_options.atSingular, state);
+						m_paths.reach(
+							states * t + ((q + k) & 3), cost + m_options.atSingular, state);
 			for (int c = 0; c < 3; ++c) {
 				Step step;
 				if (!leaves(t, q, c, step))
@@ -218,7 +198,7 @@ private:
 				// In the frame of corner 0, in which the unit is.
 				const double half = m_cost[t][c][q & 1];
 				if (step.next >= 0)
-					reach(
+					m_paths.reach(
 						states * step.next + step.quarter,
 						cost + half + m_cost[step.next][step.side][step.quarter & 1],
 						state);
@@ -235,8 +215,8 @@ private:
 		std::vector<Index> touched = {way.state / states};
 		if (way.rim >= 0 && leaves(way.state / states, way.state % states, way.rim, step))
 			m_flow.translations[m_mesh.edgeOf(way.state / states, way.rim)] += step.change;
-		for (Index to = way.state, from = m_reached[to].from; from >= 0;
-		     to = from, from = m_reached[to].from) {
+		for (Index to = way.state, from = m_paths.before(to); from >= 0;
+		     to = from, from = m_paths.before(to)) {
 			const Index t = from / states;
 			touched.push_back(t);
 			for (int c = 0; c < 3 && t != to / states; ++c) {
@@ -259,9 +239,8 @@ private:
 	IntegerFlow                    m_flow;
 	std::vector<TransitionCircuit> m_circuit;
 	std::vector<std::array<std::array<double, 2>, 3>>
-						 m_cost;    // per triangle, side, family: of half a step
-	std::vector<Reached> m_reached; // per state
-	int                  m_run = 0;
+				  m_cost;  // per triangle, side, family: of half a step
+	ShortestPaths m_paths; // nodes: states
 };
 
 } // namespace

@@ -195,13 +195,6 @@ Eigen::VectorXcd periodicStart(
 	return phase;
 }
 
-// The phase at the end of an edge, in the frame at its start, but for the whole numbers between both.
-Complex
-atEnd(const TriangleMesh& mesh, const CrossField& field, const Eigen::VectorXcd& phase, Index e)
-{
-	return turned(phase[mesh.edges()[e].to], -int(field.turns[e]));
-}
-
 // The whole numbers with which the phase increases along every edge as nearly as it should.
 Eigen::VectorXcd nearestTranslations(
 	const TriangleMesh&     mesh,
@@ -211,11 +204,18 @@ Eigen::VectorXcd nearestTranslations(
 {
 	Eigen::VectorXcd result(mesh.edgeCount());
 	for (Index e = 0; e < mesh.edgeCount(); ++e)
-		result[e] = rounded(phase[mesh.edges()[e].from] + rise[e] - atEnd(mesh, field, phase, e));
+		result[e] =
+			rounded(phase[mesh.edges()[e].from] + rise[e] - phaseAtEnd(mesh, field, phase, e));
 	return result;
 }
 
 } // namespace
+
+Complex phaseAtEnd(
+	const TriangleMesh& mesh, const CrossField& field, const Eigen::VectorXcd& phase, Index edge)
+{
+	return turned(phase[mesh.edges()[edge].to], -int(field.turns[edge]));
+}
 
 PositionField positionField(
 	const TriangleMesh&         mesh,
@@ -246,7 +246,7 @@ void finishPositions(const TriangleMesh& mesh, const CrossField& field, Position
 {
 	positions.end.resize(mesh.edgeCount());
 	for (Index e = 0; e < mesh.edgeCount(); ++e)
-		positions.end[e] = atEnd(mesh, field, positions.phase, e) + positions.translations[e];
+		positions.end[e] = phaseAtEnd(mesh, field, positions.phase, e) + positions.translations[e];
 	positions.lineEnds = positions.offCrossings = 0;
 	for (Index t = 0; t < mesh.triangleCount(); ++t) {
 		const TransitionCircuit circuit = circuitOf(mesh, field, positions.translations, t);

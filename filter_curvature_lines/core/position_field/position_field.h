@@ -26,7 +26,7 @@ struct PositionFieldOptions {
 
 struct PositionField {
 	Eigen::VectorXcd phase; // per vertex, in its frame
-	// Per edge: what the phase becomes at `to`, in the frame of `from`: i^-turns phase(to) + whole numbers.
+	// Per edge: what the phase becomes at `to`, in the frame of `from`: phaseAtEnd + whole numbers.
 	Eigen::VectorXcd end;
 	Eigen::VectorXcd translations; // per edge: those whole numbers
 	Index            lineEnds = 0; // triangles in which a line of either family ends
@@ -40,6 +40,10 @@ PositionField positionField(
 	const LineDensity&          density,
 	const PhasePins&            pins,
 	const PositionFieldOptions& options = {});
+
+// The phase at the end of an edge, in the frame at its start: i^-turns phase(to).
+Complex phaseAtEnd(
+	const TriangleMesh& mesh, const CrossField& field, const Eigen::VectorXcd& phase, Index edge);
 
 // Ends and counts from phases and translations.
 void finishPositions(const TriangleMesh& mesh, const CrossField& field, PositionField& positions);

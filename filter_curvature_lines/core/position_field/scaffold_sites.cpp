@@ -88,27 +88,6 @@ CreaseSamples sampleCreases(const std::vector<FeatureLine>& creases, const Step&
 	return samples;
 }
 
-// Points no two of which are nearer than the mean of their distances, taken in order.
-std::vector<Index> thinned(const PointSample& sample, const Eigen::VectorXd& distance)
-{
-	// A point twice as far from its neighbours is hardly ever among them: the sizes are graded.
-	constexpr double   reach = 1.5;
-	const Index        n     = sample.cloud.size();
-	std::vector<char>  covered(n, 0);
-	std::vector<Index> kept, found;
-	for (Index i = 0; i < n; ++i) {
-		if (covered[i])
-			continue;
-		kept.push_back(i);
-		const Vector3d p = sample.cloud.positions.col(i);
-		sample.search.within(p, reach * distance[i], found);
-		for (const Index j : found)
-			if ((sample.cloud.positions.col(j) - p).norm() < 0.5 * (distance[i] + distance[j]))
-				covered[j] = 1;
-	}
-	return kept;
-}
-
 Eigen::VectorXd distancesAround(const ScaffoldSites& sites)
 {
 	const NeighborSearch search(sites.points);
@@ -155,7 +134,7 @@ ScaffoldSites chooseSites(
 		creases, [&](const Vector3d& p) { return creaseStep * clearance[nearest(p)]; });
 	const Eigen::Matrix3Xd onCreases = asColumns(samples.points);
 
-	std::vector<Index> chosen = thinned(sample, distance);
+	std::vector<Index> chosen = thin(sample, distance);
 	if (onCreases.cols() > 0) {
 		const NeighborSearch search(onCreases);
 		chosen.erase(

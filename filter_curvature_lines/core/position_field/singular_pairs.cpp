@@ -16,6 +16,7 @@
 #include "cross_field.h"
 #include "point_cloud.h"
 #include "scaffold.h"
+#include "shortest_paths.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines {
@@ -44,7 +45,6 @@ public:
 		const TriangleMesh&    mesh = scaffold.mesh;
 		const Eigen::VectorXd& size = scaffold.size.size() > 0 ? scaffold.size : scaffold.spacing;
 		m_half.resize(mesh.triangleCount());
-		m_reached.resize(mesh.triangleCount());
 		for (Index t = 0; t < mesh.triangleCount(); ++t) {
 			const Triangle& corners = mesh.triangles()[t];
 			const Vector3d  centre  = mesh.vertices(Eigen::all, corners).rowwise().mean();
@@ -65,15 +65,11 @@ public:
 	Index from(Index start, double longest, const Visit& visit)
 	{
 		const TriangleMesh& mesh = m_scaffold.mesh;
-		++m_run;
-		using Item = std::pair<double, Index>;
-		std::priority_queue<Item, std::vector<Item>, std::greater<>> open;
-		m_reached[start] = {0.0, -1, m_run};
-		open.emplace(0.0, start);
-		while (!open.empty()) {
-			const auto [distance, t] = open.top();
-			open.pop();
-			if (distance > m_reached[t].distance)
+		m_paths.start(mesh.triangleCount());
+		m_paths.reach(start, 0.0, -1);
+		while (m_paths.isOpen()) {
+			const auto [distance, t] = m_paths.nearest();
+			if (!m_paths.take())
 				continue;
 			if (distance > longest)
 				break;
@@ -88,37 +84,26 @@ public:
 				int d = 0;
 				while (mesh.edgeOf(next, d) != e)
 					++d;
-				const double further = distance + m_half[t][c] + m_half[next][d];
-				Reached&     there   = m_reached[next];
-				if (there.run == m_run && there.distance <= further)
-					continue;
-				there = {further, t, m_run};
-				open.emplace(further, next);
+				m_paths.reach(next, distance + m_half[t][c] + m_half[next][d], t);
 			}
 		}
 		return -1;
 	}
 
-	double distance(Index t) const { return m_reached[t].distance; }
+	double distance(Index t) const { return m_paths.cost(t); }
 	// Of the last run: triangles from `t` back to the start.
 	std::vector<Index> wayBack(Index t) const
 	{
 		std::vector<Index> way;
-		for (; t >= 0; t = m_reached[t].from)
+		for (; t >= 0; t = m_paths.before(t))
 			way.push_back(t);
 		return way;
 	}
 
 private:
-	struct Reached {
-		double distance = 0.0;
-		Index  from     = -1;
-		int    run      = 0;
-	};
 	const Scaffold&                    m_scaffold;
 	std::vector<std::array<double, 3>> m_half; // per triangle and side: of its centre, in cells
-	std::vector<Reached>               m_reached;
-	int                                m_run = 0;
+	ShortestPaths                      m_paths;
 };
 
 // Vertices around pairs of singular points of different indices; of each pair once.

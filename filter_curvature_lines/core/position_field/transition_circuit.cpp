@@ -12,14 +12,10 @@
 
 namespace curvature_lines {
 
-namespace {
-
 bool isOdd(double whole)
 {
 	return (std::lround(whole) & 1) != 0;
 }
-
-} // namespace
 
 Complex TransitionCircuit::fixedPoint(int c) const
 {

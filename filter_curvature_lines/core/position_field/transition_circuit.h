@@ -30,6 +30,9 @@ struct TransitionCircuit {
 	bool isClosed() const;
 };
 
+// Of a number that is whole but for rounding.
+bool isOdd(double whole);
+
 // `translations`: whole numbers of every edge, from -> to.
 TransitionCircuit circuitOf(
 	const TriangleMesh&     mesh,

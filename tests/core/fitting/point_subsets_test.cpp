@@ -96,6 +96,25 @@ TEST(PointSubsets, ThinningKeepsAPointUnlessOneBeforeItIsNear)
 	EXPECT_EQ(thin(sample, 1e-9).size(), 1500u);
 }
 
+// A distance that doubles from one side of the cloud to the other.
+TEST(PointSubsets, ThinningFollowsGradedDistances)
+{
+	const PointSample       sample(shuffledTorus(1500));
+	const Eigen::Matrix3Xd& p = sample.cloud.positions;
+	const Eigen::VectorXd   x = p.row(0), distance = 0.1 + 0.1 * (x.array() - x.minCoeff()) /
+	                                                         (x.maxCoeff() - x.minCoeff());
+	const std::vector<Index> kept = thin(sample, distance);
+	std::vector<Index>       expected;
+	for (Index i = 0; i < 1500; ++i)
+		if (std::none_of(expected.begin(), expected.end(), [&](Index k) {
+				return (p.col(k) - p.col(i)).norm() < 0.5 * (distance[k] + distance[i]);
+			}))
+			expected.push_back(i);
+	EXPECT_EQ(kept, expected);
+	const Eigen::VectorXd same = Eigen::VectorXd::Constant(1500, 0.2);
+	EXPECT_EQ(thin(sample, same), thin(sample, 0.2));
+}
+
 TEST(PointSubsets, BlocksAreColumns)
 {
 	const PointCloud cloud = shuffledTorus(50);

@@ -222,13 +222,8 @@ TEST(ClosedPositionField, DoesNotChangeWithPlaceAndSize)
 		const test::TriangulatedSurface surface = name == std::string("torus")
 		                                              ? test::triangulatedTorus(36, 16)
 		                                              : test::triangulatedEllipsoid(3);
-		const test::RigidMotion         motion;
-		test::TriangulatedSurface       moved = surface;
-		moved.mesh.vertices                   = 4.0 * motion.ofPoints(surface.mesh.vertices);
-		moved.truth.normals                   = motion.ofVectors(surface.truth.normals);
-		moved.truth.d1                        = motion.ofVectors(surface.truth.d1);
-		moved.truth.d2                        = motion.ofVectors(surface.truth.d2);
-		const ClosedSurface a(surface, 1.0, 4.0), b(moved, 1.0, 1.0);
+		const test::TriangulatedSurface moved   = test::RigidMotion().of(surface, 4.0);
+		const ClosedSurface             a(surface, 1.0, 4.0), b(moved, 1.0, 1.0);
 		expectClosed(a);
 		expectClosed(b);
 		EXPECT_EQ(singularTriangles(a.closed.field), singularTriangles(b.closed.field));

@@ -148,16 +148,9 @@ TEST(FieldMeshing, CreasesOfACubeAreEdgesOfTheMesh)
 TEST(FieldMeshing, MovesAndGrowsWithTheSurface)
 {
 	const test::TriangulatedSurface surface = test::triangulatedTorus(48, 20);
-	const test::RigidMotion         motion;
-	test::TriangulatedSurface       moved = surface;
-	moved.mesh.vertices                   = 3.0 * motion.ofPoints(surface.mesh.vertices);
-	moved.truth.normals                   = motion.ofVectors(surface.truth.normals);
-	moved.truth.d1                        = motion.ofVectors(surface.truth.d1);
-	moved.truth.d2                        = motion.ofVectors(surface.truth.d2);
-	moved.truth.k1 /= 3.0;
-	moved.truth.k2 /= 3.0;
-	const MeshedField a = meshOf(test::crossed(surface), 300),
-					  b = meshOf(test::crossed(moved), 300);
+	const test::TriangulatedSurface moved   = test::RigidMotion().of(surface, 3.0);
+	const MeshedField               a       = meshOf(test::crossed(surface), 300),
+					  b                     = meshOf(test::crossed(moved), 300);
 	expectQuads(b.arrangement.mesh, 0, 0);
 	EXPECT_EQ(a.arrangement.mesh.vertexCount(), b.arrangement.mesh.vertexCount());
 	EXPECT_EQ(a.arrangement.mesh.faceCount(), b.arrangement.mesh.faceCount());

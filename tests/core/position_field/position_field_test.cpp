@@ -205,15 +205,10 @@ TEST(PositionField, LinesEndWhereTheDensityFalls)
 TEST(PositionField, DoesNotChangeWithTheSurfacesPlaceAndSize)
 {
 	const test::TriangulatedSurface surface = test::triangulatedCylinder(40, 20);
-	const test::RigidMotion         motion;
-	test::TriangulatedSurface       moved = surface;
-	moved.mesh.vertices                   = 3.0 * motion.ofPoints(surface.mesh.vertices);
-	moved.truth.normals                   = motion.ofVectors(surface.truth.normals);
-	moved.truth.d1                        = motion.ofVectors(surface.truth.d1);
-	moved.truth.d2                        = motion.ofVectors(surface.truth.d2);
-	const CrossedSurface a = test::crossed(surface), b = test::crossed(moved);
-	const LineDensity    density = constantDensity(a, 4.0, 3.0);
-	const PositionField  p =
+	const test::TriangulatedSurface moved   = test::RigidMotion().of(surface, 3.0);
+	const CrossedSurface            a = test::crossed(surface), b = test::crossed(moved);
+	const LineDensity               density = constantDensity(a, 4.0, 3.0);
+	const PositionField             p =
 		positionField(surface.mesh, a.field, density, PhasePins(surface.size()));
 	const PositionField q =
 		positionField(moved.mesh, b.field, density / 3.0, PhasePins(surface.size()));

@@ -20,6 +20,8 @@ namespace curvature_lines {
 
 namespace {
 
+constexpr char stage[] = "Restoring groups";
+
 // By experiment: clean bunny and cow, a sheet with grooves, and clusters beside a torus, which must stay rejected
 // (benchmarks/cleaning.py). Groups of 2 and of 20 lost clusters.
 constexpr Index smallVoter = 30; // points of the patches that judge groups
@@ -135,11 +137,16 @@ void GroupRestoration::run(const Progress& progress)
 	const NeighborSearch   search(positions);
 	const VoterCloud       cloud{
         m_cloud.positions, m_cloud.crowding, m_cloud.rank, m_cloud.all, active, search};
+	double done = 0.0;
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		std::vector<char> restored(m_grouped.size(), 0);
-		parallelFor(static_cast<Index>(m_grouped.size()), progress, [&](Index k) {
-			restored[k] = belongs(cloud, m_grouped[k]);
-		});
+		// how many passes there are is not known: each gets half of what is left
+		const double then = 0.5 * (done + 1.0);
+		parallelFor(
+			static_cast<Index>(m_grouped.size()), progress.sub(done, then, stage), [&](Index k) {
+				restored[k] = belongs(cloud, m_grouped[k]);
+			});
+		done = then;
 		std::vector<Index> left;
 		for (std::size_t k = 0; k < m_grouped.size(); ++k)
 			if (restored[k])

@@ -387,12 +387,27 @@ void RobustVote::restoreSurfaces(const Progress& progress)
 	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
 	addFlying(findLoneMixedPixels(
 		cloud, m_rejected, rejectedIsolation, progress.sub(0.0, 0.2, "Finding flying pixels")));
-	const Progress part = progress.sub(0.2, 1.0, "Restoring groups");
-	restoreGroups(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
-	restorePoints(cloud, m_verdicts, heightDeviation(), m_sensitivity, m_rejected, part);
+	restoreGroups(
+		cloud,
+		m_verdicts,
+		heightDeviation(),
+		m_sensitivity,
+		m_rejected,
+		progress.sub(0.2, 0.5, "Restoring groups"));
+	restorePoints(
+		cloud,
+		m_verdicts,
+		heightDeviation(),
+		m_sensitivity,
+		m_rejected,
+		progress.sub(0.5, 0.9, "Restoring points"));
 	if (const Matrix3Xd& normals = m_index.cloud().normals; normals.cols() == m_positions.cols())
 		restoreSparseSurfaces(
-			cloud, normals(Eigen::all, m_order.source), m_flying, m_rejected, part);
+			cloud,
+			normals(Eigen::all, m_order.source),
+			m_flying,
+			m_rejected,
+			progress.sub(0.9, 1.0, "Restoring sparse surfaces"));
 	rejectFlying(m_rejected);
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr char stage[] = "Restoring points";
+constexpr char stage[] = "Restoring sparse surfaces";
 constexpr int  slices  = 6;
 // The spacing around a point is the median of so many accepted points next to it.
 constexpr Index spacingPoints = 12;
@@ -125,14 +125,18 @@ void restoreSparseSurfaces(
 	});
 	for (const Candidate& candidate : candidates)
 		surface[candidate.point] = candidate.spacing > 0.0;
+	double done = 0.5;
 	for (bool changed = true; changed;) {
 		std::vector<char> stays(candidates.size(), 0);
+		// how many rounds there are is not known: each gets half of what is left
+		const double then = 0.5 * (done + 1.0);
 		parallelFor(
-			static_cast<Index>(candidates.size()), progress.sub(0.5, 1.0, stage), [&](Index k) {
+			static_cast<Index>(candidates.size()), progress.sub(done, then, stage), [&](Index k) {
 				stays[k] = surface[candidates[k].point] &&
 			               isSurrounded(
 							   cloud, normals, surface, candidates[k].spacing, candidates[k].point);
 			});
+		done = then;
 		std::vector<Candidate> left;
 		for (std::size_t k = 0; k < candidates.size(); ++k)
 			if (stays[k])

@@ -345,6 +345,22 @@ TEST(RejectOutliers, DegenerateClouds)
 		}
 }
 
+// From 0 to 1 and never back, through the vote and all that restores points after it.
+TEST(RejectOutliers, ProgressGoesForward)
+{
+	const samples::SampleCloud sample = sampled("cube", 3000, 0.0025, 0.1, 0.1);
+	double                     last   = 0.0;
+	rejectOutliers(
+		prepareCloud(sample.positions, sample.normals).cloud,
+		{},
+		Progress([&](double fraction, const char* what) {
+			EXPECT_GE(fraction, last - 1e-12) << what;
+			last = fraction;
+			return true;
+		}));
+	EXPECT_EQ(last, 1.0);
+}
+
 TEST(RejectOutliers, CanBeCancelled)
 {
 	samples::SampleRequest request;

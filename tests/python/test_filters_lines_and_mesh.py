@@ -413,7 +413,7 @@ def test_pipeline_meshes_a_rod_and_tells_what_is_missing():
     # Four edges around the rod and no fewer: more than sixty vertices, and told.
     assert report["limb_vertices"] > 20 and report["vertices"] > 70
     # The ball is left with some forty vertices, whose faces cut off a fifth of its radius; the rod has all of its length.
-    assert report["uncovered_share"] < 0.001 and report["largest_gap"] < 0.25
+    assert report["uncovered_share"] < 0.001 and report["largest_gap"] < 0.2
     # The rod is open at its end.
     mesh = meshes.current_mesh()
     assert mesh.vertex_matrix()[:, 2].max() > 1.9

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <tuple>
 #include <unordered_set>
 #include <utility>
@@ -36,16 +37,27 @@ struct Side {
 	}
 };
 
+// By edge, then by triangle. Sides of one lower vertex are collected first: few are left to sort.
 std::vector<Side> sortedSides(const std::vector<Triangle>& triangles)
 {
-	std::vector<Side> sides;
-	sides.reserve(3 * triangles.size());
-	for (std::size_t t = 0; t < triangles.size(); ++t)
-		for (int c = 0; c < 3; ++c)
-			sides.push_back({triangles[t][c], triangles[t][(c + 1) % 3], static_cast<Index>(t), c});
-	std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-		return a.edge() != b.edge() ? a.edge() < b.edge() : a.triangle < b.triangle;
-	});
+	Index vertices = 0;
+	for (const Triangle& t : triangles)
+		vertices = std::max(vertices, 1 + *std::max_element(t.begin(), t.end()));
+	std::vector<Index> first(vertices + 1, 0); // place of the next side of every lower vertex
+	const auto         forEachSide = [&](const auto& visit) {
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            for (int c = 0; c < 3; ++c)
+                visit(Side{triangles[t][c], triangles[t][(c + 1) % 3], static_cast<Index>(t), c});
+	};
+	forEachSide([&](const Side& side) { ++first[side.low() + 1]; });
+	std::partial_sum(first.begin(), first.end(), first.begin());
+	std::vector<Side> sides(3 * triangles.size());
+	forEachSide([&](const Side& side) { sides[first[side.low()]++] = side; });
+	for (Index v = 0, begin = 0; v < vertices; begin = first[v++])
+		std::sort(
+			sides.begin() + begin, sides.begin() + first[v], [](const Side& a, const Side& b) {
+				return a.high() != b.high() ? a.high() < b.high() : a.triangle < b.triangle;
+			});
 	return sides;
 }
 

@@ -198,25 +198,42 @@ ClosedPositionField closePositionField(
 	positions.translations =
 		closeTranslations(mesh, field, density, held, positions.translations, options.flow)
 			.translations;
-	PhasePieces pieces = phasePieces(mesh, field, density, positions.translations, true);
-	fitPhases(pieces, pins, options.drift, positions.phase);
 	std::vector<char> crossed(mesh.edgeCount(), 0);
 	for (int k = 0; k < options.moves; ++k) {
+		fitPhases(
+			phasePieces(mesh, field, density, positions.translations, true),
+			pins,
+			options.drift,
+			positions.phase);
 		if (moveToCrossings(mesh, pins, positions.phase, crossed, field, positions.translations) ==
 		    0)
 			break;
 		smoothWithTurns(mesh, guide, field);
-		pieces = phasePieces(mesh, field, density, positions.translations, true);
-		fitPhases(pieces, pins, options.drift, positions.phase);
 	}
-	ClosedPositionField             result;
-	const std::vector<PhaseElement> sound = soundElements(pieces, pins, positions.phase);
-	for (const Index i : unfoldPhases(mesh, sound, pins, positions.phase, progress))
-		result.turnedOver.push_back(sound[i].triangle);
-	finishPositions(mesh, field, positions);
+	ClosedPositionField result;
 	result.positions = std::move(positions);
 	result.field     = std::move(field);
+	layPhases(mesh, density, pins, options, result, progress);
 	return result;
+}
+
+void layPhases(
+	const TriangleMesh&   mesh,
+	const LineDensity&    density,
+	const PhasePins&      pins,
+	const ClosingOptions& options,
+	ClosedPositionField&  closed,
+	const Progress&       progress)
+{
+	PositionField&    positions = closed.positions;
+	const PhasePieces pieces =
+		phasePieces(mesh, closed.field, density, positions.translations, true);
+	fitPhases(pieces, pins, options.drift, positions.phase);
+	const std::vector<PhaseElement> sound = soundElements(pieces, pins, positions.phase);
+	closed.turnedOver.clear();
+	for (const Index i : unfoldPhases(mesh, sound, pins, positions.phase, progress))
+		closed.turnedOver.push_back(sound[i].triangle);
+	finishPositions(mesh, closed.field, positions);
 }
 
 } // namespace curvature_lines

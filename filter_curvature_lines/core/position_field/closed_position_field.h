@@ -21,7 +21,7 @@ struct ClosingOptions {
 	// PositionFieldOptions::fitDrift, with closed whole numbers: 3 to 100 make no difference in a prototype.
 	double drift = 30.0;
 	// Times singular points may move on to the triangle that their crossing is in.
-	int moves = 3;
+	int moves = 2;
 };
 
 struct ClosedPositionField {
@@ -40,6 +40,15 @@ ClosedPositionField closePositionField(
 	const PhasePins&      pins,
 	PositionField         positions,
 	const ClosingOptions& options  = {},
+	const Progress&       progress = {});
+
+// Phases anew where other vertices are pinned: some creases have been given up. Whole numbers stay.
+void layPhases(
+	const TriangleMesh&   mesh,
+	const LineDensity&    density,
+	const PhasePins&      pins,
+	const ClosingOptions& options,
+	ClosedPositionField&  closed,
 	const Progress&       progress = {});
 
 } // namespace curvature_lines

@@ -36,10 +36,18 @@ namespace curvature_lines {
 namespace {
 
 constexpr int mostPasses = 3;
+// Times creases are given up in a pass: those near them may turn over next.
+constexpr int mostReleases = 2;
 // Vertices of a first pass over those asked for, below which its lines have gone astray.
 constexpr double leastRatio = 0.75;
 // In cells, of paths of the flow: after that, and what it does not join remains a line that ends.
 constexpr double shortPath = 4.0;
+// Over the accepted distance: what is so far from the mesh is worth a third pass.
+constexpr double wellFar = 4.0;
+// Relative, of the number of vertices: what users are promised where limbs need no more.
+constexpr double promisedCount = 0.05;
+// Of a face that overlaps others, over a vertex of the scaffold at the accepted distance.
+constexpr double foldWeight = 10.0;
 
 // What a pass starts from.
 struct Directions {
@@ -71,41 +79,67 @@ Directions directionsOf(
 	return result;
 }
 
-// `closed`: ClosedPositionField; `turnedOver`: its triangles.
+// Closed lines, and creases given up at which they turn over.
+MeshedField layClosedLines(
+	Scaffold&                  scaffold,
+	const std::vector<Rim>&    rims,
+	const Directions&          directions,
+	const LineDensity&         density,
+	PositionField              positions,
+	const FieldMeshingOptions& options)
+{
+	ClosingOptions closing   = options.closing;
+	closing.flow.onLimb      = scaffold.onLimb;
+	ClosedPositionField laid = closePositionField(
+		scaffold.mesh,
+		directions.guide,
+		directions.field,
+		density,
+		featurePins(directions.alignment, directions.field),
+		std::move(positions),
+		closing);
+	MeshedField     result;
+	SurfaceFeatures features = directions.alignment.features;
+	for (int k = 0; k < mostReleases && !laid.turnedOver.empty(); ++k) {
+		const Index dropped = dropCreasesAt(laid.turnedOver, scaffold);
+		if (dropped == 0)
+			break;
+		result.droppedCreaseEdges += dropped + dropShortCreases(scaffold);
+		DirectionGuide         guide     = directions.guide;
+		const FeatureAlignment alignment = alignWithFeatures(scaffold, rims, guide);
+		layPhases(scaffold.mesh, density, featurePins(alignment, laid.field), closing, laid);
+		features = alignment.features;
+	}
+	result.turnedOver = static_cast<Index>(laid.turnedOver.size());
+	result.surface    = splitSingularTriangles(scaffold, laid.field, laid.positions, features);
+	return result;
+}
+
+// `closed`: FieldMeshingOptions::closed. Creases at which closed lines turn over are creases of the scaffold no more.
 MeshedField meshOnce(
-	const Scaffold&            scaffold,
+	Scaffold&                  scaffold,
+	const std::vector<Rim>&    rims,
 	const Directions&          directions,
 	double                     denser,
 	const FieldMeshingOptions& options,
-	bool                       closed,
-	std::vector<Index>&        turnedOver)
+	bool                       closed)
 {
 	MeshedField       result;
-	const LineDensity density = denser * directions.density;
-	const PhasePins   pins    = featurePins(directions.alignment, directions.field);
-	PositionField     positions =
-		positionField(scaffold.mesh, directions.field, density, pins, options.phases);
-	const SurfaceFeatures& features = directions.alignment.features;
-	if (closed) {
-		ClosingOptions closing         = options.closing;
-		closing.flow.onLimb            = scaffold.onLimb;
-		const ClosedPositionField laid = closePositionField(
-			scaffold.mesh,
-			directions.guide,
-			directions.field,
-			density,
-			pins,
-			std::move(positions),
-			closing);
-		turnedOver     = laid.turnedOver;
-		result.surface = splitSingularTriangles(scaffold, laid.field, laid.positions, features);
-	}
+	const LineDensity density   = denser * directions.density;
+	PositionField     positions = positionField(
+        scaffold.mesh,
+        directions.field,
+        density,
+        featurePins(directions.alignment, directions.field),
+        options.phases);
+	if (closed)
+		result = layClosedLines(scaffold, rims, directions, density, std::move(positions), options);
 	else
-		result.surface = {scaffold, directions.field, std::move(positions), features, {}};
+		result.surface = {
+			scaffold, directions.field, std::move(positions), directions.alignment.features, {}};
 	const SingularVertices& on = result.surface;
 	result.singularTriangles   = static_cast<Index>(singularTriangles(directions.field).size());
 	result.lineEnds            = on.positions.lineEnds;
-	result.turnedOver          = static_cast<Index>(turnedOver.size());
 	result.curves = integerLines(on.scaffold.mesh, on.field, on.positions, on.singular);
 	result.arrangement =
 		arrangeOnSurface(on.scaffold.mesh, on.field.normals, on.features, result.curves);
@@ -127,8 +161,13 @@ double neededVertices(const Scaffold& scaffold)
 	           : (scaffold.mesh.vertexAreas().array() / scaffold.size.array().square()).sum();
 }
 
-// What is lost first, then the number of vertices, as far as it is promised; then the faces that came out as quads by
-// themselves.
+// Of faces that overlap or were no quads by themselves, and of what is left out.
+double flawsOf(const MeshedField& mesh)
+{
+	return foldWeight * double(mesh.turnedOver + mesh.otherFaces) + mesh.far.weight;
+}
+
+// What is lost first, then the number of vertices, as far as it is promised; then the flaws.
 bool isBetter(
 	const MeshedField&         next,
 	double                     miss,
@@ -138,12 +177,12 @@ bool isBetter(
 {
 	if (next.arrangement.lostComponents != best.arrangement.lostComponents)
 		return next.arrangement.lostComponents < best.arrangement.lostComponents;
-	const double nextExcess = std::max(0.0, miss - options.countTolerance),
-				 bestExcess = std::max(0.0, bestMiss - options.countTolerance);
+	const double tolerance  = std::max(promisedCount, options.countTolerance);
+	const double nextExcess = std::max(0.0, miss - tolerance),
+				 bestExcess = std::max(0.0, bestMiss - tolerance);
 	if (nextExcess != bestExcess)
 		return nextExcess < bestExcess;
-	return next.otherFaces + next.turnedOver + next.far <=
-	       best.otherFaces + best.turnedOver + best.far;
+	return flawsOf(next) <= flawsOf(best);
 }
 
 } // namespace
@@ -167,24 +206,22 @@ MeshedField meshOfField(
 	bool        astray = false;
 	for (int pass = 0; pass < mostPasses; ++pass) {
 		progress.report(double(pass) / mostPasses);
-		std::vector<Index> turnedOver;
-		MeshedField        next =
-			meshOnce(scaffold, directions, denser, forPass, options.closed, turnedOver);
-		const double ratio      = next.arrangement.mesh.vertexCount() / target;
-		const double miss       = ratio > 0.0 ? std::max(ratio, 1.0 / ratio) - 1.0 : INFINITY;
-		next.droppedCreaseEdges = dropped;
-		const Index  more       = options.closed ? dropCreasesAt(turnedOver, scaffold) : 0;
-		const double before     = neededVertices(scaffold);
-		const Index  far =
-            options.closed ? shrinkSizesWhereFar(next.arrangement.mesh, scaffold, feedback) : 0;
-		next.far = far;
+		MeshedField  next  = meshOnce(scaffold, rims, directions, denser, forPass, options.closed);
+		const double ratio = next.arrangement.mesh.vertexCount() / target;
+		const double miss  = ratio > 0.0 ? std::max(ratio, 1.0 / ratio) - 1.0 : INFINITY;
+		const bool   released = next.droppedCreaseEdges > 0;
+		const double before   = neededVertices(scaffold);
+		if (options.closed)
+			next.far = shrinkSizesWhereFar(next.arrangement.mesh, scaffold, feedback);
+		const LeftOut far       = next.far;
+		next.droppedCreaseEdges = dropped += next.droppedCreaseEdges;
 		if (pass == 0 || isBetter(next, miss, best, bestMiss, options)) {
 			best     = std::move(next);
 			bestMiss = miss;
 		}
-		const bool again = pass == 0 ? more > 0 || far > 0 || miss > options.countTolerance
-		                             : (best.turnedOver > 0 && more > 0) ||
-		                                   (astray && miss > options.countTolerance);
+		const bool again =
+			pass == 0 ? released || far.vertices > 0 || miss > options.countTolerance
+					  : best.far.worst > wellFar || (astray && miss > options.countTolerance);
 		if (!(ratio > 0.0) || !again)
 			break;
 		// Closed lines run on to where they meet others: on a cone, which has fewer and fewer around, there may be no others
@@ -193,22 +230,19 @@ MeshedField meshOfField(
 			astray                       = true;
 			forPass.closing.flow.longest = shortPath;
 		}
-		else if (miss > options.countTolerance)
+		else
 			denser /= std::sqrt(ratio);
 		if (!options.holdTarget)
 			target += neededVertices(scaffold) - before;
-		if (more > 0) {
-			dropped += more + dropShortCreases(scaffold);
+		if (released)
 			directions = directionsOf(scaffold, rims, curvature, forPass);
-		}
 		else
 			directions.density =
 				lineDensity(scaffold, directions.field, curvature, forPass.density);
 	}
 	// Lines that may end go where closed ones found no room.
 	if (options.closed && best.arrangement.lostComponents > 0) {
-		std::vector<Index> turnedOver;
-		MeshedField open = meshOnce(scaffold, directions, denser, forPass, false, turnedOver);
+		MeshedField open        = meshOnce(scaffold, rims, directions, denser, forPass, false);
 		open.droppedCreaseEdges = dropped;
 		if (open.arrangement.lostComponents < best.arrangement.lostComponents)
 			return open;

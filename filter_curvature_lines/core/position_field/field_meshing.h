@@ -14,6 +14,7 @@
 #include "scaffold.h"
 #include "singular_pairs.h"
 #include "singular_vertices.h"
+#include "size_feedback.h"
 #include "surface_arrangement.h"
 #include "surface_curves.h"
 
@@ -38,9 +39,9 @@ struct MeshedField {
 	SurfaceArrangement arrangement; // its mesh cleaned up
 	Index              singularTriangles = 0, lineEnds = 0;
 	Index              turnedOver = 0; // triangles, ClosedPositionField::turnedOver
-	Index otherFaces = 0; // that were no quads before paths between them made them some
-	Index far        = 0; // vertices of the scaffold that the mesh leaves out (size_feedback.h)
-	Index droppedCreaseEdges = 0; // no line could be laid along them
+	Index   otherFaces = 0; // that were no quads before paths between them made them some
+	LeftOut far;
+	Index   droppedCreaseEdges = 0; // no line could be laid along them
 };
 
 // The mesh has about options.density.targetVertices: a first one tells how much its lines have to be denser, and which

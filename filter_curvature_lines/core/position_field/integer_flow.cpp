@@ -1,23 +1,20 @@
-// Shortest paths between what does not close, over triangles and the quarter in which a unit is carried.
+// Closest pairs of what does not close, over triangles and the quarter in which a unit is carried.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integer_flow.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <tuple>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "closest_pairs.h"
 #include "cross_field.h"
 #include "line_density.h"
 #include "point_cloud.h"
-#include "shortest_paths.h"
 #include "transition_circuit.h"
 #include "triangle_mesh.h"
 
@@ -27,14 +24,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Costs of paths differ from each other by rounding only.
-constexpr double sameCost = 1e-9;
 // Of every step, in cells: without it paths through triangles that no line crosses would wander.
 constexpr double leastStep = 1e-6;
 
 // One unit of lines, i^quarter in the frame of corner 0 of a triangle, is carried from triangle to triangle: the
 // translation of the side it leaves through changes by a unit, so that the sum of the triangle falls and that of the
-// neighbour rises.
+// neighbour rises. Node 4 t + quarter of the graph: the unit is in triangle t. Its mirror is the unit that is missing there.
 class Flow {
 public:
 	Flow(
@@ -46,53 +41,33 @@ public:
 		const IntegerFlowOptions& options) :
 			m_mesh(mesh), m_field(field), m_held(held), m_options(options)
 	{
-		const Index triangles = mesh.triangleCount();
-		m_flow.translations   = std::move(translations);
-		m_circuit.resize(triangles);
-		m_cost.resize(triangles);
-		for (Index t = 0; t < triangles; ++t) {
+		m_flow.translations = std::move(translations);
+		m_circuit.resize(mesh.triangleCount());
+		for (Index t = 0; t < mesh.triangleCount(); ++t)
 			update(t);
-			const TriangleField tri = triangleField(mesh, field, density, t);
-			const Vector3d centre = mesh.vertices(Eigen::all, mesh.triangles()[t]).rowwise().mean();
-			const double   times  = isOnLimb(mesh.triangles()[t]) ? options.limbCost : 1.0;
-			for (int c = 0; c < 3; ++c) {
-				const Index    e = mesh.edgeOf(t, c);
-				const Vector3d step =
-					mesh.vertices.col(mesh.edges()[e].from) + 0.5 * mesh.along(e) - centre;
-				const double u = tri.target[0].dot(step), v = tri.target[1].dot(step);
-				m_cost[t][c] = {
-					times * std::hypot(u, options.along * v) + leastStep,
-					times * std::hypot(v, options.along * u) + leastStep};
-			}
-		}
+		buildGraph(density);
 	}
 
 	IntegerFlow result()
 	{
-		using Source =
-			std::tuple<double, Index, int>; // cost of the way from there, triangle, quarter
-		std::priority_queue<Source, std::vector<Source>, std::greater<>> sources;
+		ClosestPairs      pairs(m_graph);
+		std::vector<Unit> units = {{}}; // the members
+		// The rims, whose count stays: they take as many as come.
+		const Index rims = pairs.add(outside(), 1);
 		for (Index t = 0; t < m_mesh.triangleCount(); ++t)
-			for (int q = 0; q < states; ++q)
-				if (isSource(t, q))
-					sources.emplace(0.0, t, q);
-		while (!sources.empty()) {
-			const auto [cost, t, q] = sources.top();
-			sources.pop();
-			if (!isSource(t, q))
-				continue;
-			const Way way = shortestFrom(t, q);
-			if (way.state < 0 || way.cost > m_options.longest)
-				continue;
-			if (way.cost > cost + sameCost) { // by now others may be closer
-				sources.emplace(way.cost, t, q);
-				continue;
-			}
-			apply(way);
+			for (int quarter = 0; quarter < quarters; ++quarter)
+				if (countOf({t, quarter}) > 0) {
+					pairs.add(nodesOf({t, quarter}), countOf({t, quarter}));
+					units.push_back({t, quarter});
+				}
+		ClosestPairs::Pair pair;
+		while (pairs.closest(m_options.longest, pair)) {
+			apply(pair.path);
+			for (const Index unit : {pair.first, pair.second})
+				if (unit != rims)
+					pairs.setCount(unit, countOf(units[unit]));
 			++m_flow.paths;
-			m_flow.length += way.cost;
-			if (isSource(t, q))
-				sources.emplace(0.0, t, q);
+			m_flow.length += pair.cost;
 		}
 		m_flow.left = static_cast<int>(
 			std::count_if(m_circuit.begin(), m_circuit.end(), [](const TransitionCircuit& c) {
@@ -102,49 +77,49 @@ public:
 	}
 
 private:
-	static constexpr int states = 4; // of a triangle: quarters
+	static constexpr int quarters = 4;
 
+	// Of lines that end in a triangle.
+	struct Unit {
+		Index triangle = -1;
+		int   quarter  = 0;
+	};
 	struct Step {
 		Complex change;       // of the translation of the edge
-		Index   next;         // triangle, -1: beyond a rim
-		int     side    = -1; // of that
+		Index   next;         // triangle, their number: beyond a rim
+		int     side    = -1; // of that triangle
 		int     quarter = 0;  // in which the unit arrives
 	};
-	struct Way {
-		double cost  = std::numeric_limits<double>::infinity();
-		Index  state = -1; // where it ends
-		int    rim   = -1; // the side of its triangle that it leaves through
-	};
 
-	bool isOnLimb(const Triangle& corners) const
+	// Nodes of the units that are beyond a rim.
+	std::vector<Index> outside() const
 	{
-		return !m_options.onLimb.empty() &&
-		       std::any_of(corners.begin(), corners.end(), [&](Index v) {
-				   return m_options.onLimb[v] != 0;
-			   });
+		const Index first = quarters * m_mesh.triangleCount();
+		return {first, first + 1, first + 2, first + 3};
 	}
 
 	void update(Index t) { m_circuit[t] = circuitOf(m_mesh, m_field, m_flow.translations, t); }
 
-	// A unit i^quarter is to be taken away from the triangle.
-	bool isSource(Index t, int quarter) const
+	// Units to be taken away. In a singular triangle what counts is whether there is an odd one; it has no sign there, and
+	// where the frame turns by a quarter, no family either.
+	int countOf(const Unit& unit) const
 	{
-		const TransitionCircuit& c = m_circuit[t];
+		const TransitionCircuit& c = m_circuit[unit.triangle];
 		if (c.index == 0)
-			return turned(c.sum, -quarter).real() > 0.5;
+			return std::max(0, int(std::lround(turned(c.sum, -unit.quarter).real())));
 		if (c.index == 2)
-			return isOdd(quarter & 1 ? c.sum.imag() : c.sum.real());
-		return isOdd(c.sum.real() + c.sum.imag());
+			return int(unit.quarter < 2 && isOdd(unit.quarter == 0 ? c.sum.real() : c.sum.imag()));
+		return int(unit.quarter == 0 && isOdd(c.sum.real() + c.sum.imag()));
 	}
-	bool isSink(Index t, int quarter) const { return isSource(t, (quarter + 2) & 3); }
-
-	// The triangle that gave away a unit of one quarter takes it back in another, in which it has been turned on the way.
-	bool closesItself(Index t, int gone, int back) const
+	std::vector<Index> nodesOf(const Unit& unit) const
 	{
-		const TransitionCircuit& c = m_circuit[t];
-		if (c.index == 0 && ((gone ^ back) & 3) == 2)
-			return turned(c.sum, -gone).real() > 1.5;
-		return (c.index & 1) == 0 && ((gone ^ back) & 1) != 0 && isSink(t, back);
+		const int   index = m_circuit[unit.triangle].index;
+		const Index first = quarters * unit.triangle;
+		if (index == 0)
+			return {first + unit.quarter};
+		if (index == 2)
+			return {first + unit.quarter, first + unit.quarter + 2};
+		return {first, first + 1, first + 2, first + 3};
 	}
 
 	// Whether the unit may leave through side c, and how.
@@ -160,9 +135,12 @@ private:
 		if (m_held[e][unit & 1])
 			return false;
 		step.change = turned(1.0, unit);
-		step.next   = ahead ? edge.right : edge.left;
-		if (step.next < 0)
+		if (edge.isRim()) {
+			step.next    = m_mesh.triangleCount();
+			step.quarter = quarter;
 			return true;
+		}
+		step.next = ahead ? edge.right : edge.left;
 		step.side = 0;
 		while (m_mesh.edgeOf(step.next, step.side) != e)
 			++step.side;
@@ -171,64 +149,94 @@ private:
 		return true;
 	}
 
-	Way shortestFrom(Index start, int quarter)
+	bool isOnLimb(const Triangle& corners) const
 	{
-		m_paths.start(states * m_mesh.triangleCount());
-		m_paths.reach(states * start + quarter, 0.0, -1);
-		Way best; // to a rim
-		while (m_paths.isOpen()) {
-			const auto [cost, state] = m_paths.nearest();
-			if (!m_paths.take())
-				continue;
-			if (cost >= best.cost || cost > m_options.longest)
-				break;
-			const Index t = state / states;
-			const int   q = state % states;
-			if (t != start ? isSink(t, q) : closesItself(t, quarter, q))
-				return {cost, state, -1};
-			if (m_circuit[t].index != 0)
-				for (int k = 1; k < states; ++k)
-					if (m_circuit[t].index != 2 || k == 2)
-						m_paths.reach(
-							states * t + ((q + k) & 3), cost + m_options.atSingular, state);
-			for (int c = 0; c < 3; ++c) {
-				Step step;
-				if (!leaves(t, q, c, step))
-					continue;
-				// In the frame of corner 0, in which the unit is.
-				const double half = m_cost[t][c][q & 1];
-				if (step.next >= 0)
-					m_paths.reach(
-						states * step.next + step.quarter,
-						cost + half + m_cost[step.next][step.side][step.quarter & 1],
-						state);
-				else if (cost + half < best.cost)
-					best = {cost + half, state, c};
-			}
-		}
-		return best;
+		return !m_options.onLimb.empty() &&
+		       std::any_of(corners.begin(), corners.end(), [&](Index v) {
+				   return m_options.onLimb[v] != 0;
+			   });
 	}
 
-	void apply(const Way& way)
+	// Of half a step, from the centre of a triangle to the middle of a side, for the units of either family.
+	std::array<double, 2> halfCost(const TriangleField& tri, Index t, int c) const
 	{
-		Step               step;
-		std::vector<Index> touched = {way.state / states};
-		if (way.rim >= 0 && leaves(way.state / states, way.state % states, way.rim, step))
-			m_flow.translations[m_mesh.edgeOf(way.state / states, way.rim)] += step.change;
-		for (Index to = way.state, from = m_paths.before(to); from >= 0;
-		     to = from, from = m_paths.before(to)) {
-			const Index t = from / states;
-			touched.push_back(t);
-			for (int c = 0; c < 3 && t != to / states; ++c) {
-				if (!leaves(t, from % states, c, step) || step.next != to / states ||
-				    step.quarter != to % states)
-					continue;
-				m_flow.translations[m_mesh.edgeOf(t, c)] += step.change;
-				break;
-			}
+		const Index    e      = m_mesh.edgeOf(t, c);
+		const Triangle corner = m_mesh.triangles()[t];
+		const Vector3d step = m_mesh.vertices.col(m_mesh.edges()[e].from) + 0.5 * m_mesh.along(e) -
+		                      m_mesh.vertices(Eigen::all, corner).rowwise().mean();
+		const double times = isOnLimb(corner) ? m_options.limbCost : 1.0;
+		const double u = tri.target[0].dot(step), v = tri.target[1].dot(step);
+		return {
+			times * std::hypot(u, m_options.along * v) + leastStep,
+			times * std::hypot(v, m_options.along * u) + leastStep};
+	}
+
+	void buildGraph(const LineDensity& density)
+	{
+		const Index triangles = m_mesh.triangleCount();
+		m_half.resize(triangles);
+		for (Index t = 0; t < triangles; ++t) {
+			const TriangleField tri = triangleField(m_mesh, m_field, density, t);
+			for (int c = 0; c < 3; ++c)
+				m_half[t][c] = halfCost(tri, t, c);
 		}
-		for (const Index t : touched)
-			update(t);
+		std::array<std::vector<MirrorGraph::Edge>, quarters> fromOutside;
+		for (Index node = 0; node < quarters * triangles; ++node) {
+			const Index t = node / quarters;
+			const int   q = node % quarters;
+			Step        step;
+			for (int c = 0; c < 3; ++c) {
+				if (!leaves(t, q, c, step))
+					continue;
+				const bool   out  = step.next == triangles;
+				const double cost = m_half[t][c][q & 1] +
+				                    (out ? 0.0 : m_half[step.next][step.side][step.quarter & 1]);
+				m_graph.edges.push_back({quarters * step.next + step.quarter, cost});
+				if (out)
+					fromOutside[q].push_back({node, cost});
+			}
+			// Lines of one family go on as the other, or come back, around a singular point.
+			if (m_circuit[t].index != 0)
+				for (int k = 1; k < quarters; ++k)
+					if (m_circuit[t].index != 2 || k == 2)
+						m_graph.edges.push_back(
+							{quarters * t + ((q + k) & 3), m_options.atSingular});
+			m_graph.first.push_back(static_cast<Index>(m_graph.edges.size()));
+		}
+		for (const auto& edges : fromOutside) {
+			m_graph.edges.insert(m_graph.edges.end(), edges.begin(), edges.end());
+			m_graph.first.push_back(static_cast<Index>(m_graph.edges.size()));
+		}
+	}
+
+	// Over the side that leads from node to node, of two rims the cheaper one.
+	void carry(Index from, Index to)
+	{
+		const Index t = from / quarters;
+		const int   q = from % quarters;
+		Step        step, best;
+		int         side = -1;
+		for (int c = 0; c < 3; ++c) {
+			if (!leaves(t, q, c, step))
+				continue;
+			if (quarters * step.next + step.quarter != to ||
+			    (side >= 0 && m_half[t][c][q & 1] >= m_half[t][side][q & 1]))
+				continue;
+			best = step;
+			side = c;
+		}
+		if (side >= 0)
+			m_flow.translations[m_mesh.edgeOf(t, side)] += best.change;
+	}
+
+	void apply(const std::vector<Index>& path)
+	{
+		for (std::size_t i = 1; i < path.size(); ++i)
+			if (path[i] / quarters != path[i - 1] / quarters)
+				carry(path[i - 1], path[i]);
+		for (const Index node : path)
+			if (node < outside().front())
+				update(node / quarters);
 	}
 
 	const TriangleMesh&       m_mesh;
@@ -236,11 +244,10 @@ private:
 	const HeldIncreases&      m_held;
 	const IntegerFlowOptions& m_options;
 
-	IntegerFlow                    m_flow;
-	std::vector<TransitionCircuit> m_circuit;
-	std::vector<std::array<std::array<double, 2>, 3>>
-				  m_cost;  // per triangle, side, family: of half a step
-	ShortestPaths m_paths; // nodes: states
+	IntegerFlow                                       m_flow;
+	std::vector<TransitionCircuit>                    m_circuit;
+	std::vector<std::array<std::array<double, 2>, 3>> m_half; // per triangle, side, family
+	MirrorGraph                                       m_graph;
 };
 
 } // namespace

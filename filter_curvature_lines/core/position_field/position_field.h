@@ -21,7 +21,7 @@ struct PositionFieldOptions {
 	// .80, .80.
 	double startDrift = 10.0;
 	double fitDrift   = 100.0;
-	int    rounds     = 2;
+	int    rounds     = 1;
 };
 
 struct PositionField {

@@ -63,18 +63,25 @@ double acceptedDistance(const Scaffold& scaffold, const SizeFeedbackOptions& opt
 	       quantile(std::vector<double>(scaffold.size.begin(), scaffold.size.end()), 0.5);
 }
 
-Index shrinkSizesWhereFar(
-	const PolygonMesh& mesh, Scaffold& scaffold, const SizeFeedbackOptions& options)
+LeftOut
+shrinkSizesWhereFar(const PolygonMesh& mesh, Scaffold& scaffold, const SizeFeedbackOptions& options)
 {
 	if (scaffold.size.size() == 0 || mesh.faceCount() == 0)
-		return 0;
+		return {};
 	const Eigen::VectorXd distance = distanceToMesh(mesh, scaffold.mesh.vertices).distance;
 	const Eigen::VectorXd areas = scaffold.mesh.vertexAreas(), before = scaffold.size;
 	const auto            vertices = [&](const Eigen::VectorXd& size) {
         return (areas.array() / size.array().square()).sum();
 	};
-	double     accepted = acceptedDistance(scaffold, options);
-	const auto far      = static_cast<Index>((distance.array() > accepted).count());
+	double  accepted = acceptedDistance(scaffold, options);
+	LeftOut far;
+	for (const double d : distance) {
+		if (!(d > accepted))
+			continue;
+		++far.vertices;
+		far.weight += (d / accepted) * (d / accepted);
+		far.worst = std::max(far.worst, d / accepted);
+	}
 	for (; (distance.array() > accepted).any(); accepted *= acceptedStep) {
 		scaffold.size = before;
 		for (Index v = 0; v < scaffold.mesh.vertexCount(); ++v)

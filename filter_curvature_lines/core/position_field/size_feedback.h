@@ -20,9 +20,15 @@ struct SizeFeedbackOptions {
 // What `accepted` is as a length.
 double acceptedDistance(const Scaffold& scaffold, const SizeFeedbackOptions& options = {});
 
-// Shrinks the sizes of scaffold vertices that are farther from the mesh, and those around. Returns how many are farther
-// than accepted, whether their sizes have shrunk or could not.
-Index shrinkSizesWhereFar(
+// Vertices of the scaffold that are farther from the mesh than accepted.
+struct LeftOut {
+	Index  vertices = 0;
+	double weight   = 0.0; // each counts by the square of its distance over the accepted one
+	double worst    = 0.0; // the largest distance over the accepted one
+};
+
+// Shrinks their sizes, and those around, as far as the growth allows.
+LeftOut shrinkSizesWhereFar(
 	const PolygonMesh& mesh, Scaffold& scaffold, const SizeFeedbackOptions& options = {});
 
 } // namespace curvature_lines

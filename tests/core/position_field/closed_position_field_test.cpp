@@ -215,6 +215,28 @@ TEST(ClosedPositionField, CreasesOfACubeAreLines)
 	}
 }
 
+// Whole numbers stay, and what the creases have bent becomes even again.
+TEST(ClosedPositionField, CreasesThatAreGivenUpHoldNoPhase)
+{
+	const test::CreasedCube cube(10);
+	ClosedSurface           closed(cube.scaffold, cube.guide, 3.7);
+	const TriangleMesh&     mesh   = closed.scaffold.mesh;
+	const Eigen::VectorXcd  before = closed.closed.positions.translations;
+	closed.pins                    = PhasePins(mesh.vertexCount());
+	layPhases(mesh, closed.density, closed.pins, {}, closed.closed);
+	EXPECT_EQ(closed.closed.positions.translations, before);
+	expectClosed(closed);
+	expectNoFolds(closed);
+	int free = 0;
+	for (Index e = 0; e < mesh.edgeCount(); ++e) {
+		const Complex rise =
+			closed.closed.positions.end[e] - closed.closed.positions.phase[mesh.edges()[e].from];
+		free += closed.scaffold.creaseEdge[e] &&
+		        std::min(std::abs(rise.real()), std::abs(rise.imag())) > 1e-6;
+	}
+	EXPECT_GT(free, 20);
+}
+
 // Lengths and angles alone count. The triangles are as they were, so that singular points can be told from each other.
 TEST(ClosedPositionField, DoesNotChangeWithPlaceAndSize)
 {

@@ -97,7 +97,8 @@ TEST(FieldMeshing, OpenFieldsAreAsBefore)
 	const MeshTopology         topology  = topologyOf(result.arrangement.mesh);
 	EXPECT_EQ(topology.eulerCharacteristic, 2);
 	EXPECT_EQ(topology.nonmanifoldEdges + topology.nonmanifoldVertices, 0);
-	EXPECT_EQ(result.turnedOver + result.otherFaces + result.far + result.droppedCreaseEdges, 0);
+	EXPECT_EQ(
+		result.turnedOver + result.otherFaces + result.far.vertices + result.droppedCreaseEdges, 0);
 	EXPECT_GT(result.lineEnds, 0);
 	EXPECT_LT(topology.quads, topology.faces);
 	EXPECT_EQ(result.surface.scaffold.mesh.vertexCount(), ellipsoid.scaffold.mesh.vertexCount());

@@ -122,6 +122,24 @@ TEST(PhaseUnfolding, MovesNoMoreThanItMust)
 	EXPECT_LT(std::abs(phase[bad] - plane.phase[bad]), 1.0);
 }
 
+// Two places far apart are as each of them alone.
+TEST(PhaseUnfolding, PlacesDoNotFeelEachOther)
+{
+	const Plane      plane(40);
+	const Index      one = 8 + 41 * 8, other = 31 + 41 * 30;
+	Eigen::VectorXcd first = plane.phase, second = plane.phase, both = plane.phase;
+	first[one] += Complex(3.0, -2.0);
+	second[other] += Complex(-2.0, 4.0);
+	both[one]   = first[one];
+	both[other] = second[other];
+	for (Eigen::VectorXcd* phase : {&first, &second, &both})
+		EXPECT_TRUE(unfoldPhases(plane.mesh, plane.elements, plane.pins, *phase).empty());
+	for (Index v = 0; v < plane.mesh.vertexCount(); ++v) {
+		const bool nearOne = v < 41 * 20;
+		EXPECT_EQ(both[v], nearOne ? first[v] : second[v]);
+	}
+}
+
 // Of one phase a vertex may be pinned, and the other free.
 TEST(PhaseUnfolding, PinnedPhasesStay)
 {

@@ -64,10 +64,10 @@ TEST(SizeFeedback, AMeshThatCoversEverythingChangesNothing)
 {
 	Scaffold              scaffold = squareOf(0.1);
 	const Eigen::VectorXd before   = scaffold.size;
-	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.5), scaffold), 0);
+	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.5), scaffold).vertices, 0);
 	EXPECT_EQ(scaffold.size, before);
 	// A fifth of the size is accepted.
-	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.5 - 0.019), scaffold), 0);
+	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.5 - 0.019), scaffold).vertices, 0);
 	EXPECT_EQ(scaffold.size, before);
 }
 
@@ -87,7 +87,7 @@ TEST(SizeFeedback, SizesShrinkByTheDistance)
 			wanted[v] *= std::max(options.leastFactor, options.accepted * 0.1 / distance);
 		}
 		ASSERT_GT(far, 20);
-		EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(end), scaffold, options), far);
+		EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(end), scaffold, options).vertices, far);
 		const Eigen::VectorXd expected = graded(scaffold.mesh, options.gradation, wanted);
 		EXPECT_LT((scaffold.size - expected).cwiseAbs().maxCoeff(), 1e-12);
 		EXPECT_GE(scaffold.size.minCoeff(), options.leastFactor * 0.1 - 1e-12);
@@ -103,10 +103,10 @@ TEST(SizeFeedback, OptionsSayWhatIsAcceptedAndHowMuchSizesShrink)
 	SizeFeedbackOptions options;
 	options.accepted  = 1.5;
 	Scaffold scaffold = squareOf(0.1);
-	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.36), scaffold, options), 0);
+	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.36), scaffold, options).vertices, 0);
 	options             = {};
 	options.leastFactor = 0.7;
-	EXPECT_GT(shrinkSizesWhereFar(meshUpTo(0.0), scaffold, options), 0);
+	EXPECT_GT(shrinkSizesWhereFar(meshUpTo(0.0), scaffold, options).vertices, 0);
 	EXPECT_NEAR(scaffold.size.minCoeff(), 0.07, 1e-12);
 }
 
@@ -122,7 +122,7 @@ TEST(SizeFeedback, TheNumberOfVerticesGrowsByNoMoreThanItMay)
 		Scaffold            scaffold = before;
 		SizeFeedbackOptions options;
 		options.mostGrowth = growth;
-		const Index far    = shrinkSizesWhereFar(meshUpTo(-0.3), scaffold, options);
+		const Index far    = shrinkSizesWhereFar(meshUpTo(-0.3), scaffold, options).vertices;
 		EXPECT_LE(vertices(scaffold), growth * vertices(before) * (1.0 + 1e-12));
 		EXPECT_GE(far, farOfAll); // the more may grow, the more is far
 		farOfAll = far;
@@ -145,16 +145,17 @@ TEST(SizeFeedback, MovesAndGrowsWithTheSurface)
 	moved.size *= 5.0;
 	other.vertices = 5.0 * motion.ofPoints(mesh.vertices);
 	other.normals  = motion.ofVectors(mesh.normals);
-	EXPECT_EQ(shrinkSizesWhereFar(mesh, scaffold), shrinkSizesWhereFar(other, moved));
+	EXPECT_EQ(
+		shrinkSizesWhereFar(mesh, scaffold).vertices, shrinkSizesWhereFar(other, moved).vertices);
 	EXPECT_LT((5.0 * scaffold.size - moved.size).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(SizeFeedback, NothingToCompareWith)
 {
 	Scaffold scaffold = squareOf(0.1);
-	EXPECT_EQ(shrinkSizesWhereFar(PolygonMesh(), scaffold), 0);
+	EXPECT_EQ(shrinkSizesWhereFar(PolygonMesh(), scaffold).vertices, 0);
 	scaffold.size.resize(0);
-	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.0), scaffold), 0);
+	EXPECT_EQ(shrinkSizesWhereFar(meshUpTo(0.0), scaffold).vertices, 0);
 	EXPECT_EQ(scaffold.size.size(), 0);
 }
 

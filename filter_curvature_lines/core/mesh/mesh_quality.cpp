@@ -50,19 +50,24 @@ Index foldedFaces(const PolygonMesh& mesh)
 	return count;
 }
 
-double scaledJacobian(const PolygonMesh& mesh, Index f)
+double scaledJacobian(const PolygonMesh& mesh, Index face)
 {
-	const NeighborLists::Row face   = mesh.faces[f];
-	const Index              count  = face.size();
-	Vector3d                 normal = Vector3d::Zero();
+	return scaledJacobian(mesh.vertices, mesh.normals, mesh.faces[face]);
+}
+
+double scaledJacobian(
+	const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xd& normals, NeighborLists::Row face)
+{
+	const Index count  = face.size();
+	Vector3d    normal = Vector3d::Zero();
 	for (const Index v : face)
-		normal += mesh.normals.col(v);
+		normal += normals.col(v);
 	normal.normalize();
 	double least = 1.0;
 	for (Index k = 0; k < count; ++k) {
-		const Vector3d here  = mesh.vertices.col(face[k]);
-		const Vector3d ahead = mesh.vertices.col(face[(k + 1) % count]) - here;
-		const Vector3d back  = mesh.vertices.col(face[(k + count - 1) % count]) - here;
+		const Vector3d here  = vertices.col(face[k]);
+		const Vector3d ahead = vertices.col(face[(k + 1) % count]) - here;
+		const Vector3d back  = vertices.col(face[(k + count - 1) % count]) - here;
 		const double   sine  = ahead.cross(back).dot(normal);
 		least                = std::min(least, sine / (ahead.norm() * back.norm() + 1e-300));
 	}

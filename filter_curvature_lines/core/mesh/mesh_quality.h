@@ -16,6 +16,9 @@ Index foldedFaces(const PolygonMesh& mesh);
 // Of faces that are quads, the least sine of a corner's angle, signed by whether the corner turns with the normals of its
 // vertices: the scaled Jacobian. Below 0: not convex.
 double scaledJacobian(const PolygonMesh& mesh, Index face);
+// Of a face that is no mesh's yet. `vertices`, `normals`: 3 x V.
+double scaledJacobian(
+	const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xd& normals, NeighborLists::Row face);
 
 struct MeshCoverage {
 	Index  uncovered  = 0;   // points farther from the mesh than two mean edges of its nearest face

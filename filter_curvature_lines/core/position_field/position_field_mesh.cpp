@@ -21,6 +21,7 @@
 #include "polygon_mesh.h"
 #include "position_field_lines.h"
 #include "progress.h"
+#include "quad_collapse.h"
 #include "rim_fit.h"
 #include "rims.h"
 #include "scaffold.h"
@@ -43,6 +44,8 @@ constexpr double verticesPerDivided = 4.0;
 constexpr double automaticTolerance = 0.2;
 // Projections of a vertex on a rim.
 constexpr int rimSteps = 2;
+// Rounds of unsound faces that go.
+constexpr int mostCollapses = 3;
 // Faces that are farther below the surface, in mean edges, although sizes have shrunk there, get a cap.
 constexpr double tallBulge = 0.7;
 
@@ -192,6 +195,12 @@ PositionFieldMeshResult buildPositionFieldMesh(
 		index, curvature, onFeature, result.mesh, progress.sub(0.95, 1.0, "Projecting vertices"));
 	result.caps         = capBulgingFaces(fitted, curvature, tallBulge, result.mesh, onFeature);
 	result.unsoundFaces = untangleFaces(fitted, curvature, onFeature, result.mesh);
+	// What no move mends goes, and its neighbours move again.
+	for (int k = 0; k < mostCollapses && result.unsoundFaces > 0; ++k) {
+		if (collapseUnsoundQuads(onFeature, result.mesh) == 0)
+			break;
+		result.unsoundFaces = untangleFaces(fitted, curvature, onFeature, result.mesh);
+	}
 	if (options.mesh.triangulate)
 		result.mesh = triangulated(result.mesh);
 	result.topology = topologyOf(result.mesh);

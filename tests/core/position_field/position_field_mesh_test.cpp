@@ -231,8 +231,9 @@ TEST(PositionFieldMesh, LinesOfANoisyCloudDoNotCross)
 		EXPECT_GT(result.lines.lines(), 40) << surface;
 		EXPECT_EQ(tests::crossingsWithinFamilies(result.lines), 0) << surface;
 		EXPECT_EQ(result.topology.quads, result.topology.faces) << surface;
-		// about 740, thinned again and again, when it was folded
-		EXPECT_GT(result.scaffoldVertices, 1200) << surface;
+		// About 740, thinned again and again, when it was folded; with vertices as far apart as the points around ask for, not
+		// as the median of all does, 1180 on the helicoid.
+		EXPECT_GT(result.scaffoldVertices, 1100) << surface;
 	}
 }
 

@@ -21,6 +21,7 @@ from clouds.cleaning import (
     uneven,
     with_clean_mesh,
 )
+from clouds.denoising_limits import fillet, thin_disk, with_true_mesh
 from clouds.flying_pixels import depth_camera, terrestrial_scan
 from clouds.generated import PLANE_FIT_NEIGHBORS
 from clouds.scans import LARGE_SCAN, found, oriented_vertices
@@ -28,6 +29,7 @@ from clouds.thin_shapes import REAL_SHAPES, SOLIDS, real_shape, rounded_wall
 from figures.cleaning import (
     denoising_figures,
     error_figures,
+    harm_figures,
     mixed_pixel_figures,
     part_selection_figures,
     ratio_figures,
@@ -245,6 +247,57 @@ def scan_lines_and_twins(settings: Settings) -> str:
         + MOVING.table(exact, settings, error_figures)
         + "\n"
         + MOVING.table(twins, settings, ratio_figures)
+    )
+
+
+PUBLIC_SET, PUBLIC_NOISE = "punet", 0.01
+
+
+@BENCHMARK.experiment("harm", "Denoising where it can do harm")
+def harm(settings: Settings) -> str:
+    exact = {"RMS error, spacings": Target(0.01, 0.0), "largest, spacings": Target(0.1, 0.0)}
+    improved = {"RMS ratio": Target(1.0, 0.5)}
+    cases = [
+        Case(f"fillet of {radius:g} spacings", fillet(radius), exact, quick=radius == 2.0)
+        for radius in (0.5, 1.0, 2.0, 4.0)
+    ]
+    cases += [
+        Case(f"{surface} {points}, exact", sampled(surface, points, 0.0), exact)
+        for surface in ("torus", "cube")
+        for points in (2000, 20000)
+    ]
+    cases += [
+        Case(
+            f"disk, {thickness:g} spacings thick, noise {noise:g}",
+            thin_disk(thickness, noise),
+            improved if noise else exact,
+            quick=thickness == 1.0 and noise > 0.0,
+        )
+        for thickness in (1.0, 1.5, 2.0, 3.0)
+        for noise in (0.0, 0.2)
+    ]
+    files = sorted((settings.data / PUBLIC_SET).glob("*.npz")) if settings.data else []
+    for file in files:
+        clean, noisy = "clean_10000", f"noisy_10000_{PUBLIC_NOISE:g}"
+        cases += [
+            Case(
+                f"{file.stem}, {name}",
+                lambda _, file=file, name=name: with_true_mesh(file, name, clean),
+                targets,
+                one_seed=True,
+            )
+            for name, targets in ((clean, exact), (noisy, improved))
+        ]
+    missing = (
+        ""
+        if files
+        else f"Shapes of the public set skipped: `--data FOLDER` says where the folder `{PUBLIC_SET}` is.\n\n"
+    )
+    return (
+        "Exact clouds, walls as thin as a few spacings, and ten shapes of the denoising set of PU-Net, clean and with "
+        f"{100 * PUBLIC_NOISE:g} % noise; normals are the true ones. The limits of moves were chosen on the public set.\n\n"
+        + missing
+        + MOVING.table(cases, settings, harm_figures)
     )
 
 

@@ -380,6 +380,115 @@ TEST(RobustDenoising, HardlyMovesACleanCloud)
 	}
 }
 
+// Two faces at a right angle, joined by a fillet of this radius. With a thickness (less than the radius), a wall: the same
+// again from inside. All lengths in spacings; noise along the normals.
+struct FilletedWall {
+	static constexpr double width = 16.0, depth = 24.0;
+	PointCloud              cloud; // in the unit frame
+	double                  radius, thickness, scale;
+
+	FilletedWall(double radius, double thickness, double noise) :
+			radius(radius), thickness(thickness), scale(1.0 / (2.0 * width))
+	{
+		samples::Random       random(21, 5);
+		const double          arc = 0.5 * EIGEN_PI * radius, length = 2.0 * width + arc;
+		const auto            n = static_cast<Index>(length * depth);
+		std::vector<Vector3d> points, normals;
+		for (const double side : {1.0, -1.0}) {
+			if (side < 0.0 && thickness <= 0.0)
+				break;
+			for (Index i = 0; i < n; ++i) {
+				const double s = random.uniform(0.0, length) - width;
+				Vector3d     p(0.0, random.uniform(0.0, depth), 0.0), normal(0.0, 0.0, 1.0);
+				if (s <= 0.0) {
+					p.x() = s;
+				}
+				else if (s < arc) {
+					const double turn = s / radius;
+					normal            = Vector3d(std::sin(turn), 0.0, std::cos(turn));
+					p.x()             = radius * normal.x();
+					p.z()             = radius * (normal.z() - 1.0);
+				}
+				else {
+					normal = Vector3d::UnitX();
+					p.x()  = radius;
+					p.z()  = arc - radius - s;
+				}
+				if (side < 0.0)
+					p -= thickness * normal;
+				points.emplace_back(p + noise * random.normal3().x() * normal);
+				normals.emplace_back(side * normal);
+			}
+		}
+		cloud.positions.resize(3, points.size());
+		cloud.normals.resize(3, points.size());
+		for (std::size_t i = 0; i < points.size(); ++i) {
+			cloud.positions.col(i) = scale * points[i];
+			cloud.normals.col(i)   = normals[i];
+		}
+	}
+	// Of the points from their side of the wall, in spacings.
+	Eigen::VectorXd errors(const Matrix3Xd& positions) const
+	{
+		Eigen::VectorXd result(positions.cols());
+		for (Index i = 0; i < positions.cols(); ++i) {
+			const Vector3d        p = positions.col(i) / scale;
+			const Eigen::Vector2d d(p.x(), p.z() + radius); // from the axis of the fillet
+			const double          outside = std::hypot(std::max(d.x(), 0.0), std::max(d.y(), 0.0)) +
+			                       std::min(std::max(d.x(), d.y()), 0.0) - radius;
+			const bool inner = thickness > 0.0 && i >= positions.cols() / 2;
+			result[i]        = inner ? outside + thickness : outside;
+		}
+		return result;
+	}
+};
+
+double rms(const Eigen::VectorXd& values)
+{
+	return std::sqrt(values.squaredNorm() / double(values.size()));
+}
+
+// A fillet is narrower than the smallest patch. Before moves were bound to the noise it was flattened by up to .05
+// spacings.
+TEST(RobustDenoising, MovesNothingWhereThereIsNoNoise)
+{
+	for (const double radius : {0.5, 1.0, 2.0, 4.0}) {
+		SCOPED_TRACE(radius);
+		const FilletedWall wall(radius, 0.0, 0.0);
+		const auto         errors = wall.errors(denoiseRobustly(wall.cloud).positions);
+		EXPECT_LT(rms(errors), 1e-3);
+		EXPECT_LT(errors.cwiseAbs().maxCoeff(), 0.03);
+	}
+}
+
+TEST(RobustDenoising, SidesOfAThinWallStayApart)
+{
+	const struct {
+		double thickness, noise;
+	} cases[] = {{1.0, 0.1}, {1.5, 0.2}, {3.0, 0.3}};
+	for (const auto& c : cases) {
+		SCOPED_TRACE(std::to_string(c.thickness) + " " + std::to_string(c.noise));
+		const FilletedWall wall(4.0, c.thickness, c.noise);
+		const auto         errors = wall.errors(denoiseRobustly(wall.cloud).positions);
+		EXPECT_LT(rms(errors), 0.5 * c.noise);
+		EXPECT_LT((errors.array().abs() > 0.5 * c.thickness).count(), 3);
+	}
+}
+
+// Beyond a few deviations nothing is noise, whatever the surface around says.
+TEST(RobustDenoising, LeavesPointsFarFromTheSurfaceWhereTheyAre)
+{
+	NoisyCloud         noisy("torus", 4000, 0.002);
+	std::vector<Index> far;
+	for (Index i = 0; i < noisy.cloud.size(); i += 400) {
+		noisy.cloud.positions.col(i) += 0.03 * noisy.cloud.normals.col(i);
+		far.push_back(i);
+	}
+	const auto result = denoiseRobustly(noisy.cloud);
+	for (const Index i : far)
+		EXPECT_EQ(result.positions.col(i), noisy.cloud.positions.col(i));
+}
+
 TEST(RobustDenoising, TakesNoiseAndRadiusAsGiven)
 {
 	const NoisyCloud       noisy("torus", 3000, 0.005);

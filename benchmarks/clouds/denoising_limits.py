@@ -1,5 +1,5 @@
 # Clouds on which denoising can only do harm, or hardly anything but harm: exact ones with detail as narrow as the points are
-# apart, walls as thin as that, and clean shapes of a public denoising set.
+# apart, walls as thin as that, clean shapes of a public denoising set, and surfaces that are there twice.
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pymeshlab
 
-from clouds.cleaning import Cloud
+from clouds.cleaning import Cloud, sampled, signed_distance
 from clouds.thin_shapes import without_outliers
 
 POINTS = 8000
+LAYER_NOISE = 0.03  # spacings, of layers that are there twice
 Distance = Callable[[np.ndarray], np.ndarray]
 
 
@@ -68,6 +69,22 @@ def thin_disk(thickness: float, noise: float) -> Callable[[int], Cloud]:
             return np.hypot(outside, points[:, 2]) - half
 
         return exact_cloud(positions, outward, noise * spacing * random.normal(size=POINTS), distance)
+
+    return make
+
+
+def registered_badly(surface: str, distance: float, share: float = 1.0) -> Callable[[int], Cloud]:
+    """Two samples of a surface, the second so many spacings outside the first; of it only this share of the points."""
+
+    def make(seed: int) -> Cloud:
+        first, second = sampled(surface, POINTS, 0.0)(seed), sampled(surface, POINTS, 0.0)(seed + 100)
+        kept = np.random.default_rng(seed).random(POINTS) < share
+        shifted = (second.positions + distance * first.spacing * second.outward)[kept]
+        upper = np.arange(POINTS + len(shifted)) >= POINTS
+        outward = np.vstack([first.outward, second.outward[kept]])
+        noise = LAYER_NOISE * first.spacing * np.random.default_rng(seed + 1).normal(size=len(upper))
+        cloud = exact_cloud(np.vstack([first.positions, shifted]), outward, noise, signed_distance(surface))
+        return replace(cloud, parts={"lower": ~upper, "upper": upper})
 
     return make
 

@@ -79,6 +79,17 @@ def harm_figures(cloud: Cloud, moved: Moved) -> Figures:
     return figures
 
 
+def layer_figures(cloud: Cloud, moved: Moved) -> Figures:
+    """How far the layers of a surface that is there twice are from each other, after over before, and what is said of them."""
+    before, after = cloud.distance_before, cloud.distance(moved.positions)
+    upper, lower = cloud.parts["upper"], cloud.parts["lower"]
+    apart = abs(float(np.median(after[upper]) - np.median(after[lower])))
+    figures = {"distance left": apart / float(np.median(before[upper]) - np.median(before[lower]))}
+    if "doubled_share" in moved.report:
+        figures["told, %"] = 100.0 * moved.report["doubled_share"]
+    return figures
+
+
 def denoising_figures(cloud: Cloud, moved: Moved) -> Figures:
     """Ratios per part; of the whole: shrinking or growing, clumping, what became of the rim."""
     before, after = cloud.distance_before, cloud.distance(moved.positions)

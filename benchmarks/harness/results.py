@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -29,3 +29,4 @@ class Selection:
 class Moved:
     positions: np.ndarray  # N x 3, of all points, in the order given
     seconds: float  # wall clock
+    report: dict[str, float] = field(default_factory=dict)  # what the filter says of it; peers say nothing

@@ -1,5 +1,6 @@
 // Denoise Point Cloud by Robust Curvature: core/denoising on a layer.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cleaning_report.h"
 #include "curvature_cache.h"
 #include "denoising.h"
 #include "filter_results.h"
@@ -104,6 +105,7 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& option
 	writeNormals(layer, points, prepared, denoised.normals);
 
 	results.count("points", points.size());
+	results.count("warnings", 0);
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
 	results.count("duplicates", prepared.duplicates);
 	if (published) {
@@ -114,6 +116,7 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& option
 	else {
 		results.real("noise", denoised.pointDeviation * prepared.diagonal);
 		results.real("radius", denoised.radius);
+		reportDoubledLayers(results, denoised.doubledShare);
 	}
 	results.real("moved_rms", denoised.rmsMove * prepared.diagonal);
 	results.real("moved_max", denoised.maxMove * prepared.diagonal);

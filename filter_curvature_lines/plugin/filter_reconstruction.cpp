@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "cleaning_report.h"
 #include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
@@ -278,6 +279,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("crossings", result.mesh.crossings);
 	reportMesh(results, topology);
 	reportLosses(results, result, options.pipeline.tracing.targetVertices, prepared.diagonal);
+	reportDoubledLayers(results, result.doubledShare);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -55,6 +55,8 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         "cones",
         "inverted_repaired",
         "dropped_components",
+        "doubled_share",
+        "unstructured_share",
         "warnings",
     }  # returned
     for page in PAGES:

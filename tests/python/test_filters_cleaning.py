@@ -234,3 +234,16 @@ def test_denoising_keeps_edges():
     after = np.linalg.norm(moved - analytic_surfaces.project("cube", moved)["foot_points"], axis=1)
     assert rms(after[edge]) <= 0.35 * rms(before[edge])
     assert rms(after[~edge]) <= 0.12 * rms(before[~edge])
+
+
+def test_denoising_tells_layers_that_are_there_twice():
+    random = np.random.default_rng(3)
+    flat = random.random((3000, 2))
+    heights = np.where(np.arange(3000) < 1500, 0.0, 0.02) + random.normal(0.0, 0.001, 3000)
+    normals = np.tile([0.0, 0.0, 1.0], (3000, 1))
+    meshes = layer(np.column_stack([flat, heights]), normals)
+    report = meshes.apply_filter(DENOISE)
+    assert report["doubled_share"] > 0.9 and report["warnings"] == 1
+    assert np.std(meshes.current_mesh().vertex_matrix()[:, 2]) < 0.002
+    once = layer(np.column_stack([flat, random.normal(0.0, 0.01, 3000)]), normals).apply_filter(DENOISE)
+    assert once["doubled_share"] == 0.0 and once["warnings"] == 0

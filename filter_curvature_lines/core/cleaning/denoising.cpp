@@ -54,6 +54,7 @@ DenoisingResult denoiseByProjection(
 	result.normals        = std::move(moved.normals);
 	result.pointDeviation = moved.pointDeviation;
 	result.radius         = moved.radius;
+	result.doubledShare   = moved.doubledShare;
 	measureMoves(index.cloud(), result);
 	progress.report(1.0);
 	return result;

@@ -32,6 +32,7 @@ struct DenoisingResult {
 	// Robust: what was used.
 	double pointDeviation = 0.0; // RobustDenoisingResult::pointDeviation, a length
 	double radius         = 0.0; // in local spacings
+	double doubledShare   = 0.0; // RobustDenoisingResult::doubledShare
 	// Paper
 	Index  iterations    = 0;
 	double initialEnergy = 0.0, finalEnergy = 0.0;

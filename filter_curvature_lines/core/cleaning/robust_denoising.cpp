@@ -16,6 +16,7 @@
 #include "blended_surface.h"
 #include "cloud_index.h"
 #include "covering_patch.h"
+#include "doubled_layers.h"
 #include "near_duplicates.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
@@ -605,15 +606,16 @@ RobustDenoisingResult denoiseRobustly(
 	const PointCloud     mean       = none ? PointCloud() : meanPoints(index, duplicates);
 	const CloudIndex     points     = none ? index : index.moved(mean.positions, mean.normals);
 	if (points.size() < fewestPoints)
-		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius};
+		return {index.cloud().positions, index.cloud().normals, options.noise, options.radius, 0.0};
 	RobustDenoisingResult result =
 		RobustDenoiser(points, options, progress.sub(0.025, 0.05, stage)).run(progress);
-	if (none)
-		return result;
-	PointCloud moved =
-		placedAroundMeans(index.cloud(), duplicates, mean, {result.positions, result.normals});
-	result.positions = std::move(moved.positions);
-	result.normals   = std::move(moved.normals);
+	if (!none) {
+		PointCloud moved =
+			placedAroundMeans(index.cloud(), duplicates, mean, {result.positions, result.normals});
+		result.positions = std::move(moved.positions);
+		result.normals   = std::move(moved.normals);
+	}
+	result.doubledShare = doubledShare(index, {result.positions, result.normals});
 	return result;
 }
 

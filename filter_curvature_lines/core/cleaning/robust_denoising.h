@@ -22,6 +22,7 @@ struct RobustDenoisingResult {
 	// points; a length.
 	double pointDeviation = 0.0;
 	double radius         = 0.0; // used, in local spacings; likewise
+	double doubledShare   = 0.0; // of the points, see doubled_layers.h
 };
 
 RobustDenoisingResult denoiseRobustly(

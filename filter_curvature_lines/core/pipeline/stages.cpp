@@ -190,6 +190,7 @@ CleanSurface estimateThenDenoise(
 	surface.noise   = moved.pointDeviation > 0.0 ? moved.pointDeviation : noisy.heightDeviation;
 	surface.moves   = std::move(moved.moves);
 	surface.rmsMove = moved.rmsMove;
+	surface.doubledShare = moved.doubledShare;
 	surface.field.height.resize(0); // above the points as they were
 	makeTangent(surface.index.cloud().normals, surface.field);
 	surface.index.minimum(progress.sub(0.9, 1.0, "Finding neighborhoods"));
@@ -204,7 +205,7 @@ CleanSurface denoiseThenEstimate(
 	const Progress&        progress)
 {
 	CloudIndex      cleaned = noisy.index;
-	double          noise = noisy.heightDeviation, rmsMove = 0.0;
+	double          noise = noisy.heightDeviation, rmsMove = 0.0, doubledShare = 0.0;
 	Eigen::VectorXd moves = Eigen::VectorXd::Zero(noisy.index.size());
 	if (options.denoise) {
 		DenoisingResult moved;
@@ -224,9 +225,10 @@ CleanSurface denoiseThenEstimate(
 		clock.book("denoising");
 		if (moved.pointDeviation > 0.0)
 			noise = moved.pointDeviation;
-		moves   = std::move(moved.moves);
-		rmsMove = moved.rmsMove;
-		cleaned = noisy.index.moved(std::move(moved.positions), std::move(moved.normals));
+		moves        = std::move(moved.moves);
+		rmsMove      = moved.rmsMove;
+		doubledShare = moved.doubledShare;
+		cleaned      = noisy.index.moved(std::move(moved.positions), std::move(moved.normals));
 	}
 	CurvatureField field = estimate(cleaned, options.curvature, clock, progress.sub(0.6, 1.0, ""));
 	CleanSurface   surface;
@@ -237,9 +239,10 @@ CleanSurface denoiseThenEstimate(
 		surface.index = cleaned;
 		surface.field = std::move(field);
 	}
-	surface.noise   = noise;
-	surface.moves   = std::move(moves);
-	surface.rmsMove = rmsMove;
+	surface.noise        = noise;
+	surface.moves        = std::move(moves);
+	surface.rmsMove      = rmsMove;
+	surface.doubledShare = doubledShare;
 	return surface;
 }
 

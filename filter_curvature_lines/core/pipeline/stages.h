@@ -73,7 +73,8 @@ struct CleanSurface {
 	double noise = 0.0;
 	// N, lengths: how far denoising moved each point, 0 without; and their root mean square
 	Eigen::VectorXd moves;
-	double          rmsMove = 0.0;
+	double          rmsMove      = 0.0;
+	double          doubledShare = 0.0; // RobustDenoisingResult::doubledShare; 0 without
 };
 
 // Curvature from the noisy points, then denoising. Denoised points lie on a smooth surface of its own small waves,

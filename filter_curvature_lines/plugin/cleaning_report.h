@@ -28,4 +28,16 @@ inline void reportDoubledLayers(FilterResults& results, double share)
 			"them, others are left. Check the registration of the scans.");
 }
 
+// `share`: OutlierResult::unstructuredShare.
+inline void reportUnstructured(FilterResults& results, double share, bool rejected)
+{
+	constexpr double told = 0.05;
+	results.real("unstructured_share", share);
+	if (share > told && !rejected)
+		results.warn(
+			"No surface goes through " + aboutShare(share) +
+			" (unstructured_share), as with hair, grass and foliage. They are kept; "
+			"'reject_unstructured' rejects them.");
+}
+
 } // namespace curvature_lines

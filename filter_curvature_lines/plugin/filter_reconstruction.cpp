@@ -104,6 +104,13 @@ void parameters(ParameterTable& table, Options& options)
 		"Reject outliers",
 		"Leave outliers out.");
 	table.row(
+		"reject_unstructured",
+		pipeline.outliers.rejectUnstructured,
+		Flag(),
+		"Reject hair, grass and foliage",
+		"With Reject outliers: leave out also points that form no surface which the cloud could "
+		"resolve. Otherwise they stay, and the report says how many there are.");
+	table.row(
 		"denoise",
 		pipeline.denoise,
 		Flag(),
@@ -280,6 +287,8 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	reportMesh(results, topology);
 	reportLosses(results, result, options.pipeline.tracing.targetVertices, prepared.diagonal);
 	reportDoubledLayers(results, result.doubledShare);
+	reportUnstructured(
+		results, result.unstructuredShare, options.pipeline.outliers.rejectUnstructured);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cleaning_report.h"
 #include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
@@ -53,6 +54,13 @@ void parameters(ParameterTable& table, Options& options)
 		"Rounds",
 		"How often at most the estimate is repeated without the outliers found so far (1 to 20).",
 		advancedParameter);
+	table.row(
+		"reject_unstructured",
+		options.rejection.rejectUnstructured,
+		Flag(),
+		"Reject hair, grass and foliage",
+		"Robust mode: select also points that form no surface which the cloud could resolve. "
+		"Otherwise they stay, and the report says how many there are.");
 	table.row(
 		"delete_selected",
 		options.deleteSelected,
@@ -115,6 +123,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	FilterResults results;
 	results.count("points", points.size());
+	results.count("warnings", 0);
 	results.count("outliers", static_cast<Index>(selected.size()));
 	results.count("isolated", rejected.isolated);
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
@@ -122,6 +131,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("rounds", rejected.roundsUsed);
 	results.count("deleted", options.deleteSelected ? deleteVertices(layer.cm, selected) : 0);
 	results.real("noise", rejected.heightDeviation * prepared.diagonal);
+	reportUnstructured(results, rejected.unstructuredShare, options.rejection.rejectUnstructured);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -70,6 +70,7 @@ class MeshSet(pymeshlab.MeshSet):
         sensitivity: float = 3.5,
         vote_threshold: float = 0.5,
         rounds: int = 3,
+        reject_unstructured: bool = False,
         delete_selected: bool = False,
     ) -> dict[str, float]:
         """Selects the points that do not lie on the surface.
@@ -83,6 +84,9 @@ class MeshSet(pymeshlab.MeshSet):
         vote_threshold: A point is an outlier when more than this share of the votes is against it (0 to 1).
 
         rounds: How often at most the estimate is repeated without the outliers found so far (1 to 20).
+
+        reject_unstructured: Robust mode: select also points that form no surface which the cloud could resolve.
+            Otherwise they stay, and the report says how many there are.
 
         delete_selected: Delete the selected points (and faces that use them) at once.
         """
@@ -240,6 +244,7 @@ class MeshSet(pymeshlab.MeshSet):
         triangulate: bool = False,
         close_holes: bool = False,
         reject_outliers: bool = True,
+        reject_unstructured: bool = False,
         denoise: bool = True,
         smooth_directions: bool = True,
         estimate_normals: Literal["If Missing", "Never", "Always"] = "If Missing",
@@ -278,6 +283,9 @@ class MeshSet(pymeshlab.MeshSet):
         close_holes: Fill holes that are small against the mesh.
 
         reject_outliers: Leave outliers out.
+
+        reject_unstructured: With Reject outliers: leave out also points that form no surface which the cloud could
+            resolve. Otherwise they stay, and the report says how many there are.
 
         denoise: Move the points onto the surface. Switch it off for exact data.
 

@@ -49,7 +49,7 @@ CONTRACT = {
     }),
     OUTLIERS: Filter("Select Outliers by Robust Curvature", {
         "mode": Choice(["Robust", "Paper"]), "sensitivity": Number(3.5, 2.5), "vote_threshold": Number(0.5, 0.6), "rounds": Number(3, 2),
-        "delete_selected": Flag(False),
+        "reject_unstructured": Flag(False), "delete_selected": Flag(False),
     }),
     DENOISE: Filter("Denoise Point Cloud by Robust Curvature", {
         "method": Choice(["Robust", "Paper"]), "noise": Number(0.0, 0.01), "radius": Number(0.0, 6.5), "iterations": Number(100, 5),
@@ -73,7 +73,7 @@ CONTRACT = {
         "method": Choice(["Position Field", "Traced Lines"]), "target_vertices": Number(0, 80), "epsilon": Number(0.0, 0.01),
         "anisotropy": Number(1.5, 1.2), "points_per_vertex": Number(24.0, 12.0), "hole_size": Number(8.0, 4.0),
         "quads": Choice(QUADS), "triangulate": Flag(False), "close_holes": Flag(False),
-        "reject_outliers": Flag(True), "denoise": Flag(True), "smooth_directions": Flag(True),
+        "reject_outliers": Flag(True), "reject_unstructured": Flag(False), "denoise": Flag(True), "smooth_directions": Flag(True),
         "estimate_normals": Choice(["If Missing", "Never", "Always"]), "scale_mode": SCALES, "keep_intermediate_layers": Flag(False),
     }),
     M_WEIGHTED: Filter("M-Weighted Curvature (Euler Least Squares)", {

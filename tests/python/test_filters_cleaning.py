@@ -247,3 +247,20 @@ def test_denoising_tells_layers_that_are_there_twice():
     assert np.std(meshes.current_mesh().vertex_matrix()[:, 2]) < 0.002
     once = layer(np.column_stack([flat, random.normal(0.0, 0.01, 3000)]), normals).apply_filter(DENOISE)
     assert once["doubled_share"] == 0.0 and once["warnings"] == 0
+
+
+def test_hair_is_told_or_rejected():
+    random = np.random.default_rng(5)
+    outward = random.normal(size=(3000, 3))
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    hair = random.uniform(-0.3, 0.3, (1500, 3)) + [1.5, 0.0, 0.0]
+    turned = random.normal(size=hair.shape)
+    normals = np.vstack([outward, turned / np.linalg.norm(turned, axis=1, keepdims=True)])
+    meshes = layer(np.vstack([outward, hair]), normals)
+    told = meshes.apply_filter(OUTLIERS)
+    assert told["warnings"] == 1 and 0.25 < told["unstructured_share"] < 0.4
+    assert meshes.current_mesh().vertex_selection_array().mean() < 0.1
+    rejected = meshes.apply_filter(OUTLIERS, reject_unstructured=True)
+    selected = meshes.current_mesh().vertex_selection_array()
+    assert selected[3000:].mean() > 0.95 and selected[:3000].mean() < 0.002
+    assert rejected["warnings"] == 0 and abs(rejected["unstructured_share"] - 1 / 3) < 0.02

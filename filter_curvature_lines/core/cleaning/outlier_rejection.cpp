@@ -60,7 +60,8 @@ rejectOutliers(const CloudIndex& index, const OutlierOptions& options, const Pro
 	OutlierResult result =
 		options.mode == OutlierOptions::Mode::Paper
 			? rejectByPublishedVotes(index, options, progress)
-			: rejectByRobustVotes(index, options.sensitivity, options.rounds, progress);
+			: rejectByRobustVotes(
+				  index, options.sensitivity, options.rounds, progress, options.rejectUnstructured);
 	progress.report(1.0);
 	return result;
 }

@@ -19,6 +19,8 @@ struct OutlierOptions {
 	// normally distributed heights 9 are. By experiment (benchmarks/cleaning.py).
 	double sensitivity = 3.5;
 	Index  rounds      = 3; // Robust: re-estimation without the points rejected before, at most
+	// Robust: hair, grass, foliage (unstructured_points.h) are rejected; else kept, and told.
+	bool rejectUnstructured = false;
 	// Paper: rejected when more than this share of the votes is against (A09: 1/2).
 	double                 voteThreshold = 0.5;
 	RobustCurvatureOptions curvature;

@@ -24,6 +24,7 @@
 #include "quantile.h"
 #include "sparse_restoration.h"
 #include "spatial_order.h"
+#include "unstructured_points.h"
 
 namespace curvature_lines {
 
@@ -83,6 +84,9 @@ class RobustVote {
 public:
 	RobustVote(const CloudIndex& index, double sensitivity, const Progress& progress);
 	void rejectFlyingPixels(const Progress& progress); // before the first vote
+	// Likewise, per point of the cloud; those that the votes then accept, such as the ground below grass, come back.
+	void rejectUntilAccepted(const std::vector<char>& unstructured);
+	void rejectAmongUnstructured();
 	void fitVoters(const Progress& progress);
 	bool vote(const Progress& progress); // true when something changed
 	double heightDeviation() const;
@@ -116,7 +120,8 @@ private:
 	NeighborLists             m_votersOf; // of each point
 	std::vector<Verdict>      m_verdicts;
 	std::vector<char>         m_rejected;
-	std::vector<char>         m_flying; // rejected whatever the votes say
+	std::vector<char>         m_flying;       // rejected whatever the votes say
+	std::vector<char>         m_unstructured; // rejected until the votes accept them
 	Index                     m_isolated = 0;
 };
 
@@ -349,6 +354,15 @@ void RobustVote::rejectFlyingPixels(const Progress& progress)
 	rejectFlying(m_rejected);
 }
 
+void RobustVote::rejectUntilAccepted(const std::vector<char>& unstructured)
+{
+	m_unstructured.resize(size());
+	for (Index i = 0; i < size(); ++i) {
+		m_unstructured[i] = unstructured[m_order.source[i]];
+		m_rejected[i] |= m_unstructured[i];
+	}
+}
+
 void RobustVote::addFlying(const std::vector<char>& more)
 {
 	for (Index i = 0; i < size(); ++i)
@@ -382,11 +396,28 @@ bool RobustVote::vote(const Progress& progress)
 	return replaceRejected(rejected);
 }
 
+// Small surfaces would take many of a volume of points back, and of what lies among them.
+void RobustVote::rejectAmongUnstructured()
+{
+	if (m_unstructured.empty())
+		return;
+	parallelFor(size(), {}, [&](Index i) {
+		if (!m_rejected[i])
+			return;
+		const auto near  = m_search.nearest(m_positions.col(i), groupSize + 1);
+		const auto count = std::count_if(
+			near.begin(), near.end(), [&](Index j) { return m_unstructured[j] && m_rejected[j]; });
+		if (m_unstructured[i] || count >= minRejectedPeers)
+			m_flying[i] = 1;
+	});
+}
+
 void RobustVote::restoreSurfaces(const Progress& progress)
 {
 	const VoterCloud cloud{m_positions, m_crowding, m_order.rank, m_search, {}, m_search};
 	addFlying(findLoneMixedPixels(
 		cloud, m_rejected, rejectedIsolation, progress.sub(0.0, 0.2, "Finding flying pixels")));
+	rejectAmongUnstructured();
 	restoreGroups(
 		cloud,
 		m_verdicts,
@@ -434,12 +465,18 @@ OutlierResult RobustVote::result() const
 	return result;
 }
 
-OutlierResult
-rejectOnce(const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
+OutlierResult rejectOnce(
+	const CloudIndex&        index,
+	double                   sensitivity,
+	Index                    rounds,
+	const std::vector<char>& unstructured, // may be empty
+	const Progress&          progress)
 {
 	RobustVote  votes(index, sensitivity, progress.sub(0.0, 0.04, "Finding neighbors"));
 	const Index most = std::max<Index>(rounds, 1);
 	votes.rejectFlyingPixels(progress.sub(0.04, 0.05, "Finding flying pixels"));
+	if (!unstructured.empty())
+		votes.rejectUntilAccepted(unstructured);
 	Index used = 0;
 	for (bool changed = true; changed && used < most; ++used) {
 		const Progress part = progress.sub(
@@ -458,15 +495,17 @@ Index countOf(const OutlierResult& result)
 	return static_cast<Index>(std::count(result.outlier.begin(), result.outlier.end(), char(1)));
 }
 
-} // namespace
-
 // Where most heights are equal because they were rounded, the voters' deviation is that of one layer, and all other layers
 // look like outliers.
-OutlierResult rejectByRobustVotes(
-	const CloudIndex& index, double sensitivity, Index rounds, const Progress& progress)
+OutlierResult rejectRounded(
+	const CloudIndex&        index,
+	double                   sensitivity,
+	Index                    rounds,
+	const std::vector<char>& unstructured,
+	const Progress&          progress)
 {
-	OutlierResult first =
-		rejectOnce(index, sensitivity, rounds, progress.sub(0.0, 0.5, "Rejecting outliers"));
+	OutlierResult first = rejectOnce(
+		index, sensitivity, rounds, unstructured, progress.sub(0.0, 0.5, "Rejecting outliers"));
 	if (double(countOf(first)) <= suspiciousShare * double(index.size()))
 		return first;
 	std::vector<double>     spacing = index.spacing();
@@ -478,8 +517,34 @@ OutlierResult rejectByRobustVotes(
 		index.moved(spread.positions, index.cloud().normals),
 		sensitivity,
 		rounds,
+		unstructured,
 		progress.sub(0.5, 1.0, "Rejecting outliers"));
 	return double(countOf(second)) > reliefShare * double(countOf(first)) ? first : second;
+}
+
+} // namespace
+
+OutlierResult rejectByRobustVotes(
+	const CloudIndex& index,
+	double            sensitivity,
+	Index             rounds,
+	const Progress&   progress,
+	bool              rejectUnstructured)
+{
+	if (!rejectUnstructured) {
+		OutlierResult result     = rejectRounded(index, sensitivity, rounds, {}, progress);
+		result.unstructuredShare = unstructuredShare(index);
+		return result;
+	}
+	const std::vector<char> unstructured =
+		findUnstructured(index, progress.sub(0.0, 0.2, "Finding hair and grass"));
+	OutlierResult result = rejectRounded(
+		index, sensitivity, rounds, unstructured, progress.sub(0.2, 1.0, "Rejecting outliers"));
+	Index count = 0;
+	for (Index i = 0; i < index.size(); ++i)
+		count += unstructured[i] && result.outlier[i];
+	result.unstructuredShare = double(count) / std::max<double>(1.0, double(index.size()));
+	return result;
 }
 
 double voterHeightDeviation(const CloudIndex& index, const Progress& progress)

@@ -16,7 +16,8 @@ OutlierResult rejectByRobustVotes(
 	const CloudIndex& index, // unit frame
 	double            sensitivity,
 	Index             rounds,
-	const Progress&   progress = {});
+	const Progress&   progress           = {},
+	bool              rejectUnstructured = false); // unstructured_points.h
 
 // OutlierResult::heightDeviation without a vote.
 double voterHeightDeviation(const CloudIndex& index, const Progress& progress = {});

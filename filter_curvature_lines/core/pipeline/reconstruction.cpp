@@ -39,14 +39,15 @@ NoisyPoints inliersOf(
 ReconstructionResult resultOf(NoisyPoints noisy, CleanSurface surface)
 {
 	ReconstructionResult result;
-	result.outlier      = std::move(noisy.outlier);
-	result.kept         = std::move(noisy.kept);
-	result.cloud        = surface.index.cloud();
-	result.field        = std::move(surface.field);
-	result.noise        = surface.noise;
-	result.moves        = std::move(surface.moves);
-	result.rmsMove      = surface.rmsMove;
-	result.doubledShare = surface.doubledShare;
+	result.outlier           = std::move(noisy.outlier);
+	result.unstructuredShare = noisy.unstructuredShare;
+	result.kept              = std::move(noisy.kept);
+	result.cloud             = surface.index.cloud();
+	result.field             = std::move(surface.field);
+	result.noise             = surface.noise;
+	result.moves             = std::move(surface.moves);
+	result.rmsMove           = surface.rmsMove;
+	result.doubledShare      = surface.doubledShare;
 	return result;
 }
 

@@ -77,9 +77,10 @@ struct ReconstructionResult {
 	Index        foldedFaces = 0;
 	// RobustDenoisingResult::pointDeviation; without denoising OutlierResult::heightDeviation; else 0
 	double                        noise = 0.0;
-	Eigen::VectorXd               moves;              // per point of `cloud`, lengths: by denoising
-	double                        rmsMove      = 0.0; // their root mean square
-	double                        doubledShare = 0.0; // RobustDenoisingResult::doubledShare
+	Eigen::VectorXd               moves; // per point of `cloud`, lengths: by denoising
+	double                        rmsMove           = 0.0; // their root mean square
+	double                        doubledShare      = 0.0; // RobustDenoisingResult::doubledShare
+	double                        unstructuredShare = 0.0; // OutlierResult::unstructuredShare
 	std::map<std::string, double> seconds; // per stage: outliers, neighborhoods, curvature, …
 };
 

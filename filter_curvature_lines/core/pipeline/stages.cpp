@@ -130,8 +130,9 @@ withoutOutliers(const CloudIndex& given, const OutlierOptions& options, const Pr
 {
 	OutlierResult rejected = rejectOutliers(given, options, progress);
 	NoisyPoints   points;
-	points.outlier         = std::move(rejected.outlier);
-	points.heightDeviation = rejected.heightDeviation;
+	points.outlier           = std::move(rejected.outlier);
+	points.heightDeviation   = rejected.heightDeviation;
+	points.unstructuredShare = rejected.unstructuredShare;
 	for (Index i = 0; i < given.size(); ++i)
 		if (!points.outlier[i])
 			points.kept.push_back(i);

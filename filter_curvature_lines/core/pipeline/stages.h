@@ -44,9 +44,10 @@ private:
 // The points of a cloud that are left when its outliers are out, still with their noise.
 struct NoisyPoints {
 	CloudIndex         index;
-	std::vector<Index> kept;                  // index in the given cloud of each
-	std::vector<char>  outlier;               // of each point of the given cloud
-	double             heightDeviation = 0.0; // OutlierResult::heightDeviation; 0: not measured
+	std::vector<Index> kept;                    // index in the given cloud of each
+	std::vector<char>  outlier;                 // of each point of the given cloud
+	double             heightDeviation   = 0.0; // OutlierResult::heightDeviation; 0: not measured
+	double             unstructuredShare = 0.0; // OutlierResult::unstructuredShare
 };
 
 NoisyPoints allPoints(const CloudIndex& given);

@@ -533,7 +533,7 @@ OutlierResult rejectByRobustVotes(
 {
 	if (!rejectUnstructured) {
 		OutlierResult result     = rejectRounded(index, sensitivity, rounds, {}, progress);
-		result.unstructuredShare = unstructuredShare(index);
+		result.unstructuredShare = unstructuredShare(index, result.outlier);
 		return result;
 	}
 	const std::vector<char> unstructured =

@@ -42,7 +42,8 @@ constexpr double      thickBesideThin = 0.15;
 constexpr double      timesThicker    = 3.0;
 constexpr double      usualSurface    = 0.08;
 constexpr std::size_t sizesBesideThin = 2;
-constexpr Index       places          = 500; // that tell what is usual
+constexpr Index       places          = 200; // whose share is told
+constexpr Index       judges          = 60;  // of them, that tell what is usual
 constexpr Index       neighbors       = 24;
 constexpr int         passes          = 3;
 constexpr int         rounds          = 3;
@@ -175,9 +176,9 @@ private:
 	std::size_t m_first = sizes.size(); // size at which most of it is a surface
 };
 
-std::vector<Index> sampleOf(const CloudIndex& index)
+std::vector<Index> sampleOf(const CloudIndex& index, Index most)
 {
-	const Index count = std::min(places, index.size());
+	const Index count = std::min(most, index.size());
 	return {index.shuffled().begin(), index.shuffled().begin() + count};
 }
 
@@ -205,7 +206,7 @@ findOnce(const CloudIndex& index, const Neighborhoods& at, const Progress& progr
 std::vector<char> findUnstructured(const CloudIndex& index, const Progress& progress)
 {
 	Neighborhoods whole(index);
-	whole.measure(sampleOf(index));
+	whole.measure(sampleOf(index, judges));
 	std::vector<char>  flagged(index.size(), 0);
 	CloudIndex         rest = index;
 	std::vector<Index> kept(index.size());
@@ -235,16 +236,18 @@ std::vector<char> findUnstructured(const CloudIndex& index, const Progress& prog
 	return flagged;
 }
 
-double unstructuredShare(const CloudIndex& index, const Progress& progress)
+double unstructuredShare(
+	const CloudIndex& index, const std::vector<char>& rejected, const Progress& progress)
 {
 	if (index.size() == 0)
 		return 0.0;
-	Neighborhoods            at(index);
-	const std::vector<Index> sample = sampleOf(index);
-	at.measure(sample);
-	std::vector<char> flagged(sample.size());
+	Neighborhoods at(index);
+	at.measure(sampleOf(index, judges));
+	const std::vector<Index> sample = sampleOf(index, places);
+	std::vector<char>        flagged(sample.size(), 0);
 	parallelFor(static_cast<Index>(sample.size()), progress, [&](Index k) {
-		flagged[k] = at.unstructured(sample[k]);
+		if (rejected.empty() || !rejected[sample[k]])
+			flagged[k] = at.unstructured(sample[k]);
 	});
 	return double(std::count(flagged.begin(), flagged.end(), char(1))) / double(flagged.size());
 }

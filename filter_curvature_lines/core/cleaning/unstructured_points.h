@@ -16,8 +16,9 @@ namespace curvature_lines {
 // points look like hair, stay. A surface with noise of two spacings is one: a neighbourhood of some hundred points shows it.
 std::vector<char> findUnstructured(const CloudIndex& index, const Progress& progress = {});
 
-// Share of the points that findUnstructured() would say 1 of, 0..1; from a sample of 500, without asking their neighbours,
-// so that some percent of a coarse shape may be counted.
-double unstructuredShare(const CloudIndex& index, const Progress& progress = {});
+// Share of the points that findUnstructured() would say 1 of and that are not `rejected` (N, or empty: none is), 0..1; from a
+// sample of 200, without asking their neighbours, so that some percent of a coarse shape may be counted.
+double unstructuredShare(
+	const CloudIndex& index, const std::vector<char>& rejected = {}, const Progress& progress = {});
 
 } // namespace curvature_lines

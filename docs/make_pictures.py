@@ -13,12 +13,14 @@ from pymeshlab_curvature_lines.render import render
 
 CHECKOUT = Path(__file__).resolve().parent.parent
 DOCS, OUT = CHECKOUT / "docs", CHECKOUT / "out"
-PANEL = (900, 780)
+PANEL, SMALL_PANEL = (900, 780), (560, 485)  # in the small one the dots of selected points are larger
 RANGE_MAP, ANGEL, DRAGON = "meshlab_lato270_rawscan.ply", "angel_rawscan.obj", "dragon_vrip.ply"
 FANDISK, TWELVE = "fandisk_noise0.3.obj", "twelve_impulsive0.5.obj"
 FANDISK_CLEAN = "fandisk_clean.obj"
 TRACED = (1066, 800)
 COW, BUNNY, ARMADILLO = "cow_loop2_46433_derived.ply", "bunny_oriented.ply", "armadillo.obj"
+HORSE, CHAMELEON = "horse_oriented.ply", "chameleon.pts"
+SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
 HAND, TOOTH = "hand_closed.obj", "tooth_pongo_EM.ply"
 TRACED_CROSSINGS = 4000
 EPSILONS, LEAST_SPACING, MOST_SPACING = (1e-5, 1e-4, 1e-3), 0.003, 0.5  # the latter two in diagonals
@@ -31,6 +33,8 @@ VIEWS = {
     BUNNY: ((0.2, 0.2, 1.0), Y_UP),
     ARMADILLO: ((0.3, 0.2, -1.0), Y_UP),
     HAND: ((0.2, 0.1, 1.0), Y_UP),
+    HORSE: ((1.0, 0.4, -0.3), (0.0, 0.0, 1.0)),
+    CHAMELEON: ((1.0, 0.3, 0.3), Y_UP),
     TOOTH: ((0.3, -0.7, 1.0), (0.0, 0.0, 1.0)),
 }
 
@@ -97,6 +101,25 @@ def cleaning(path: Path) -> list[Path]:
         f"{path.name}: {outliers} of {len(framed)} points are outliers, the others moved {report['moved_rms']:.3g} (RMS)"
     )
     return [before, after]
+
+
+def rejected(path: Path) -> list[Path]:
+    """The points as they come from both sides, those that the filter selects in red."""
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(path))
+    if meshes.current_mesh().face_number() > 0:
+        meshes.meshing_remove_unreferenced_vertices()
+        meshes.compute_normal_per_vertex()
+        forget_triangles(meshes)
+    report = meshes.compute_selection_point_cloud_outliers_by_curvature()
+    print(f"{path.name}: {report['outliers']} of {report['points']} points are selected")
+    pictures = []
+    for side, sign in (("front", 1.0), ("back", -1.0)):
+        pictures.append(OUT / f"{path.stem}_rejected_{side}.png")
+        view, up = VIEWS.get(path.name, ((0.0, 0.0, 1.0), Y_UP))
+        view = tuple(sign * along if upwards == 0.0 else along for along, upwards in zip(view, up, strict=True))
+        render(pictures[-1], meshes.current_mesh(), view=view, up=up, size=SMALL_PANEL)
+    return pictures
 
 
 def curvature(path: Path) -> Path:
@@ -173,6 +196,10 @@ def gallery(folder: Path, topics: list[str]) -> None:
         write_strips("gallery_scans", [cleaning(folder / name) for name in (RANGE_MAP, ANGEL)], 1400)
     if "meshes" in topics:
         write_strips("gallery_meshes", [cleaning(folder / name) for name in (FANDISK, TWELVE)], 1200)
+    if "rejected" in topics:
+        shapes = (folder / BUNNY, folder / HORSE, folder / RANGE_MAP, SAMPLES / CHAMELEON)
+        rows = [rejected(shape) for shape in shapes]
+        write_strips("gallery_rejected", [[*rows[0], *rows[1]], [*rows[2], *rows[3]]], 2240)
     if "ray_tracing" in topics:
         shapes = [ray_traced(folder / name) for name in (FANDISK_CLEAN, BUNNY, DRAGON)]
         columns = [list(column) for column in zip(*shapes, strict=True)]
@@ -190,7 +217,7 @@ def gallery(folder: Path, topics: list[str]) -> None:
 
 
 def main() -> None:
-    topics = ["scans", "meshes", "curvature", "ray_tracing", "lines", "epsilon", "quads"]
+    topics = ["scans", "meshes", "rejected", "curvature", "ray_tracing", "lines", "epsilon", "quads"]
     parser = argparse.ArgumentParser(description=__doc__)
     kinds = parser.add_subparsers(dest="kind", required=True)
     kinds.add_parser("pipeline", help="from what scripts/demo.sh left in out/")

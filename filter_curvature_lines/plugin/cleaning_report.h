@@ -31,7 +31,7 @@ inline void reportDoubledLayers(FilterResults& results, double share)
 // `share`: OutlierResult::unstructuredShare.
 inline void reportUnstructured(FilterResults& results, double share, bool rejected)
 {
-	constexpr double told = 0.05;
+	constexpr double told = 0.1;
 	results.real("unstructured_share", share);
 	if (share > told && !rejected)
 		results.warn(

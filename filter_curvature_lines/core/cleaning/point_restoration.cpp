@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 
 #include "disjoint_sets.h"
 #include "outlier_ballot.h"
@@ -57,6 +58,9 @@ constexpr std::size_t fewestInPart  = 60;
 constexpr double      contact       = 2.4;
 constexpr Index       contactPoints = 20; // nearest points looked at
 constexpr std::size_t fewestContact = 3;
+// A rod has no more than a point or two at its foot. It is no thicker than this: deviation along its second axis, in
+// spacings; that of a flat patch with fewestInPart points is 2.2.
+constexpr double thickestRod = 1.2;
 
 struct Candidate {
 	Index                       point = 0;
@@ -96,6 +100,7 @@ private:
 	void findCandidates(const Progress& progress);
 	bool continues(const Candidate& candidate) const;
 	bool touches(const Candidate& candidate) const;
+	bool isRod(const std::vector<Index>& part) const; // of m_candidates
 	template<class Restored>
 	bool restoreIf(const Restored& restored);
 	bool restoreContinued();
@@ -199,10 +204,11 @@ bool PointRestoration::continues(const Candidate& candidate) const
 
 bool PointRestoration::touches(const Candidate& candidate) const
 {
-	std::size_t beside = 0;
+	std::size_t  beside  = 0;
+	const double spacing = candidate.surfaces.front().spacing;
 	for (const Index j : m_cloud.all.nearest(m_cloud.positions.col(candidate.point), contactPoints))
 		beside += !m_rejected[j] &&
-		          distance(candidate.point, j) <= contact * candidate.surfaces.front().spacing;
+		          distance(candidate.point, j) <= contact * std::max(spacing, ownSpacing(j));
 	return beside >= acceptedBeside;
 }
 
@@ -223,6 +229,21 @@ bool PointRestoration::restoreIf(const Restored& restored)
 	return !points.empty();
 }
 
+bool PointRestoration::isRod(const std::vector<Index>& part) const
+{
+	std::vector<Index> points;
+	double             spacing = 0.0;
+	for (const Index c : part) {
+		points.push_back(m_candidates[c].point);
+		spacing += m_candidates[c].surfaces.front().spacing / double(part.size());
+	}
+	Eigen::Matrix3Xd positions = columnsOf(m_cloud.positions, points);
+	positions.colwise() -= positions.rowwise().mean().eval();
+	Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+	axes.computeDirect(positions * positions.transpose() / double(part.size()));
+	return axes.eigenvalues()[1] <= thickestRod * thickestRod * spacing * spacing;
+}
+
 bool PointRestoration::restoreContinued()
 {
 	return restoreIf(
@@ -241,15 +262,19 @@ bool PointRestoration::restoreParts()
 			for (const Index j : surface.members)
 				if (at[j] >= 0)
 					parts.join(c, at[j]);
-	std::vector<std::size_t> size(count, 0), touching(count, 0);
+	std::vector<std::size_t>        touching(count, 0);
+	std::vector<std::vector<Index>> members(count);
 	for (Index c = 0; c < count; ++c) {
-		++size[parts.find(c)];
+		members[parts.find(c)].push_back(c);
 		touching[parts.find(c)] += touches(m_candidates[c]);
 	}
-	return restoreIf([&](std::size_t c) {
-		const Index part = parts.find(static_cast<Index>(c));
-		return size[part] >= fewestInPart && touching[part] >= fewestContact;
-	});
+	std::vector<char> restored(count, 0);
+	for (Index part = 0; part < count; ++part)
+		restored[part] =
+			members[part].size() >= fewestInPart &&
+			(touching[part] >= fewestContact || (touching[part] > 0 && isRod(members[part])));
+	return restoreIf(
+		[&](std::size_t c) { return restored[parts.find(static_cast<Index>(c))] != 0; });
 }
 
 void PointRestoration::run(const Progress& progress)

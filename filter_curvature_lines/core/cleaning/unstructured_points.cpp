@@ -36,14 +36,15 @@ constexpr Index                partOfAll = 6;
 // Deviation of the points from a quadric over the radius of the disk they would fill. By experiment: .25 to .5 for random
 // points of a volume; at most .2 at the edges of exact shapes; .2 to .27 with noise of two spacings, from 600 points on.
 constexpr double thick = 0.27;
-// In two neighbouring sizes, the smallest ones at which half of the cloud is below usualSurface, where it is so many times
+// In two neighbouring sizes, the smallest ones at which two fifths of the cloud are below usualSurface, where it is so many times
 // thinner: the blades of grass on a flat ground. Wider neighbourhoods of grass are mostly ground.
 constexpr double      thickBesideThin = 0.15;
 constexpr double      timesThicker    = 3.0;
 constexpr double      usualSurface    = 0.08;
 constexpr std::size_t sizesBesideThin = 2;
 constexpr Index       places          = 200; // whose share is told
-constexpr Index       judges          = 60;  // of them, that tell what is usual
+constexpr Index       judges          = 120; // of them, that tell what is usual
+constexpr double      quietShare      = 0.4; // of the judges: a third of a cloud may be grass
 constexpr Index       neighbors       = 24;
 constexpr int         passes          = 3;
 constexpr int         rounds          = 3;
@@ -111,14 +112,14 @@ public:
 			parallelFor(static_cast<Index>(sample.size()), {}, [&](Index k) {
 				thickness[k] = thicknessAt(sample[k], sizes[s]);
 			});
-			m_usual[s] = medianInPlace(thickness);
+			m_usual[s] = quantileInPlace(thickness, quietShare);
 			if (m_usual[s] < usualSurface) {
 				m_first = s;
 				for (++s; s < std::min(m_first + sizesBesideThin, sizes.size()); ++s) {
 					parallelFor(static_cast<Index>(sample.size()), {}, [&](Index k) {
 						thickness[k] = thicknessAt(sample[k], sizes[s]);
 					});
-					m_usual[s] = medianInPlace(thickness);
+					m_usual[s] = quantileInPlace(thickness, quietShare);
 				}
 				return;
 			}

@@ -52,6 +52,21 @@ TEST(PointRestoration, ARodThinnerThanTheSpacingStays)
 		countOf(rejectedOf(sampledRevolution(sphereWithRod(0.03, 1.0), 10000, 2)), 0, 10000), 10);
 }
 
+// Their feet touch the surface at a point or two. A third of the seeds lost the whole rod.
+TEST(PointRestoration, RodsOfHalfASpacingStay)
+{
+	for (const double radius : {0.018, 0.025, 0.03})
+		for (const int seed : {1, 2, 3, 4}) {
+			SCOPED_TRACE(std::to_string(radius) + " " + std::to_string(seed));
+			EXPECT_LE(
+				countOf(
+					rejectedOf(sampledRevolution(sphereWithRod(radius, 1.0), 10000, seed)),
+					0,
+					10000),
+				10);
+		}
+}
+
 // Half the points of a strip on the surface are rejected by hand.
 TEST(PointRestoration, ContinuesASurfacePassByPass)
 {

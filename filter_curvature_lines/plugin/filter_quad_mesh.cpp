@@ -105,12 +105,12 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	NewLayers          layers(context.document);
 	MeshModel&         layer    = layers.add("curvature-aligned mesh", lineLayer);
-	const MeshTopology topology = writePolygons(layer, built.mesh, prepared);
+	const MeshTopology topology = writePolygons(layer, built, prepared);
 	layers.keep(layer);
 
 	results.count("lines", lines.lines());
 	results.count("crossings", built.crossings);
-	reportMesh(results, topology);
+	reportMesh(results, topology, built.texture);
 	results.seconds("total", total.seconds());
 	return results;
 }

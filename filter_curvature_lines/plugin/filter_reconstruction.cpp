@@ -273,7 +273,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 				layers.add("lines of curvature", source), result.lines, prepared, cleaned.id());
 	}
 	MeshModel&         layer    = layers.add("curvature-aligned mesh", source);
-	const MeshTopology topology = writePolygons(layer, result.mesh.mesh, prepared);
+	const MeshTopology topology = writePolygons(layer, result.mesh, prepared);
 	layers.keep(layer);
 
 	results.count("points", points.size());
@@ -284,7 +284,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.real("moved_rms", result.rmsMove * prepared.diagonal);
 	reportStages(results, result);
 	results.count("crossings", result.mesh.crossings);
-	reportMesh(results, topology);
+	reportMesh(results, topology, result.mesh.texture);
 	reportLosses(results, result, options.pipeline.tracing.targetVertices, prepared.diagonal);
 	reportDoubledLayers(results, result.doubledShare);
 	reportUnstructured(

@@ -6,11 +6,15 @@
 #include <cstddef>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "filter_results.h"
 #include "host_types.h"
+#include "mesh_finishing.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
 #include "polygon_triangulation.h"
+#include "texture_charts.h"
 
 namespace curvature_lines {
 
@@ -27,13 +31,28 @@ void writeFaceNormals(CMeshO& mesh, const std::vector<Index>& polygon, Index pol
 		mesh.face[t].N() = sums[polygon[t]].Normalize();
 }
 
+// `corners`: 2 x three per face.
+void writeTexture(MeshModel& layer, const Eigen::Matrix2Xd& corners)
+{
+	layer.updateDataMask(MeshModel::MM_WEDGTEXCOORD);
+	for (std::size_t t = 0; t < layer.cm.face.size(); ++t)
+		for (int c = 0; c < 3; ++c) {
+			const auto column = corners.col(static_cast<Index>(3 * t + c));
+			auto&      wedge  = layer.cm.face[t].WT(c);
+			wedge.U()         = toScalar(column.x());
+			wedge.V()         = toScalar(column.y());
+			wedge.N()         = 0; // of the only texture there may be
+		}
+}
+
 } // namespace
 
 MeshTopology
-writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud& frame)
+writePolygons(MeshModel& layer, const FinishedMesh& finished, const PreparedCloud& frame)
 {
-	const PolygonTriangulation cut     = triangulatePolygons(polygons);
-	const PolygonMesh&         written = cut.polygons;
+	const PolygonMesh&         polygons = finished.mesh;
+	const PolygonTriangulation cut      = triangulatePolygons(polygons);
+	const PolygonMesh&         written  = cut.polygons;
 
 	CMeshO& mesh = layer.cm;
 	vcg::tri::Allocator<CMeshO>::AddVertices(mesh, written.vertexCount());
@@ -52,10 +71,12 @@ writePolygons(MeshModel& layer, const PolygonMesh& polygons, const PreparedCloud
 	vcg::tri::UpdateBounding<CMeshO>::Box(mesh);
 	if (std::count(cut.inner.begin(), cut.inner.end(), char(1)) > 0)
 		layer.updateDataMask(MeshModel::MM_POLYGONAL);
+	if (finished.texture.charts > 0)
+		writeTexture(layer, cornersOfTriangles(polygons, finished.texture.corners, cut));
 	return topologyOf(written);
 }
 
-void reportMesh(FilterResults& results, const MeshTopology& t)
+void reportMesh(FilterResults& results, const MeshTopology& t, const TextureCoordinates& texture)
 {
 	results.count("vertices", t.vertices);
 	results.count("faces", t.faces);
@@ -68,6 +89,10 @@ void reportMesh(FilterResults& results, const MeshTopology& t)
 	results.count("nonmanifold_edges", t.nonmanifoldEdges);
 	results.count("nonmanifold_vertices", t.nonmanifoldVertices);
 	results.count("components", t.components);
+	if (texture.charts > 0) {
+		results.count("texture_charts", texture.charts);
+		results.count("texture_cells", texture.cells);
+	}
 }
 
 } // namespace curvature_lines

@@ -100,6 +100,18 @@ void meshParameters(ParameterTable& table, MeshFinishingOptions& options)
 		Flag(),
 		"Close holes",
 		"Fill holes that are small against the mesh.");
+	table.row(
+		"texture_coordinates",
+		options.textureCoordinates,
+		Flag(),
+		"Texture coordinates",
+		"Give the corners of the faces texture coordinates (of wedges, between 0 and 1) along the "
+		"two families of lines: every quad is a square cell, all cells are equally large, and "
+		"'texture_cells' of them fill a side of the texture. The mesh is cut into "
+		"'texture_charts' pieces that do not overlap, with seams at sharp creases (Position "
+		"Field) and from irregular vertices on; other faces than quads fill a cell each. Save the "
+		"mesh as PLY, or with Triangulate as OBJ: hosts write wrong texture coordinates into OBJ "
+		"files of polygons.");
 }
 
 } // namespace curvature_lines

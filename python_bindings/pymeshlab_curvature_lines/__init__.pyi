@@ -213,6 +213,7 @@ class MeshSet(pymeshlab.MeshSet):
         quads: Literal["Pure", "Dominant", "Subdivided"] = "Dominant",
         triangulate: bool = False,
         close_holes: bool = False,
+        texture_coordinates: bool = False,
         split_concave: bool = True,
     ) -> dict[str, float]:
         """Builds a quad-dominant mesh from a layer of curvature lines.
@@ -227,6 +228,13 @@ class MeshSet(pymeshlab.MeshSet):
         triangulate: Cut all faces into triangles, for programs that know no others.
 
         close_holes: Fill holes that are small against the mesh.
+
+        texture_coordinates: Give the corners of the faces texture coordinates (of wedges, between 0 and 1) along the
+            two families of lines: every quad is a square cell, all cells are equally large, and 'texture_cells' of them
+            fill a side of the texture. The mesh is cut into 'texture_charts' pieces that do not overlap, with seams at
+            sharp creases (Position Field) and from irregular vertices on; other faces than quads fill a cell each. Save
+            the mesh as PLY, or with Triangulate as OBJ: hosts write wrong texture coordinates into OBJ files of
+            polygons.
 
         split_concave: Cut faces with a reflex corner into convex ones.
         """
@@ -243,6 +251,7 @@ class MeshSet(pymeshlab.MeshSet):
         quads: Literal["Pure", "Dominant", "Subdivided"] = "Pure",
         triangulate: bool = False,
         close_holes: bool = False,
+        texture_coordinates: bool = False,
         reject_outliers: bool = True,
         reject_unstructured: bool = False,
         denoise: bool = True,
@@ -281,6 +290,13 @@ class MeshSet(pymeshlab.MeshSet):
         triangulate: Cut all faces into triangles, for programs that know no others.
 
         close_holes: Fill holes that are small against the mesh.
+
+        texture_coordinates: Give the corners of the faces texture coordinates (of wedges, between 0 and 1) along the
+            two families of lines: every quad is a square cell, all cells are equally large, and 'texture_cells' of them
+            fill a side of the texture. The mesh is cut into 'texture_charts' pieces that do not overlap, with seams at
+            sharp creases (Position Field) and from irregular vertices on; other faces than quads fill a cell each. Save
+            the mesh as PLY, or with Triangulate as OBJ: hosts write wrong texture coordinates into OBJ files of
+            polygons.
 
         reject_outliers: Leave outliers out.
 

@@ -67,12 +67,13 @@ CONTRACT = {
         "min_angle": Number(30.0, 40.0), "spacing": Number(0.0, 0.03), "denoise": Flag(True),
     }),
     MESH: Filter("Build Curvature-Aligned Quad Mesh", {
-        "point_cloud": Layer(CLOUD, OTHER_CLOUD), "quads": Choice(QUADS, default=1), "triangulate": Flag(False), "close_holes": Flag(False), "split_concave": Flag(True),
+        "point_cloud": Layer(CLOUD, OTHER_CLOUD), "quads": Choice(QUADS, default=1), "triangulate": Flag(False), "close_holes": Flag(False),
+        "texture_coordinates": Flag(False), "split_concave": Flag(True),
     }),
     PIPELINE: Filter("Surface Reconstruction: Curvature-Aligned Quads", {
         "method": Choice(["Position Field", "Traced Lines"]), "target_vertices": Number(0, 80), "epsilon": Number(0.0, 0.01),
         "anisotropy": Number(1.5, 1.2), "points_per_vertex": Number(24.0, 12.0), "hole_size": Number(8.0, 4.0),
-        "quads": Choice(QUADS), "triangulate": Flag(False), "close_holes": Flag(False),
+        "quads": Choice(QUADS), "triangulate": Flag(False), "close_holes": Flag(False), "texture_coordinates": Flag(False),
         "reject_outliers": Flag(True), "reject_unstructured": Flag(False), "denoise": Flag(True), "smooth_directions": Flag(True),
         "estimate_normals": Choice(["If Missing", "Never", "Always"]), "scale_mode": SCALES, "keep_intermediate_layers": Flag(False),
     }),

@@ -315,6 +315,75 @@ def test_polygons_survive_an_obj_file(torus, tmp_path):
     assert len(faces) == report["faces"] and sides.count(4) == report["quads"]
 
 
+def cells_of(meshes, report):
+    """Texture coordinates in cells, corners of triangles: F x 3 x 2."""
+    mesh = meshes.current_mesh()
+    corners = mesh.wedge_tex_coord_matrix()
+    assert corners.shape == (3 * mesh.face_number(), 2) and 0 <= corners.min() and corners.max() <= 1
+    return report["texture_cells"] * corners.reshape(-1, 3, 2)
+
+
+@pytest.mark.parametrize("triangulate", [False, True])
+def test_every_quad_has_a_cell_of_the_texture(torus, triangulate):
+    meshes = layer_of(torus)
+    report = meshes.apply_filter(PIPELINE, texture_coordinates=True, triangulate=triangulate, **QUICK)
+    cells = cells_of(meshes, report)
+    assert report["texture_charts"] >= 1
+    assert np.abs(cells - np.round(cells)).max() < 1e-4  # quads only: whole numbers
+    a, b = cells[:, 1] - cells[:, 0], cells[:, 2] - cells[:, 0]
+    assert np.allclose(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], 1.0, atol=1e-4)  # half a cell each, none turned over
+    places = np.floor(cells.mean(axis=1)).astype(int)
+    assert np.unique(places, axis=0, return_counts=True)[1].tolist() == [2] * (meshes.current_mesh().face_number() // 2)
+
+
+def test_seams_of_the_texture_are_at_creases():
+    cloud = generate("cube", 2400, noise=0.001, seed=4)
+    meshes = layer_of(cloud)
+    report = meshes.apply_filter(PIPELINE, texture_coordinates=True, reject_outliers=False)
+    assert report["texture_charts"] == 6
+    # a chart is flat: faces whose cells touch look to one side of the cube
+    mesh = meshes.current_mesh()
+    sides = np.round(mesh.face_normal_matrix()).astype(int)
+    places = {
+        tuple(place): side for place, side in zip(np.floor(cells_of(meshes, report).mean(axis=1)), sides.tolist())
+    }
+    for (x, y), side in places.items():
+        assert places.get((x + 1, y), side) == side and places.get((x, y + 1), side) == side
+
+
+def test_no_texture_coordinates_unless_asked_for(torus):
+    meshes = layer_of(torus)
+    report = meshes.apply_filter(PIPELINE, **QUICK)
+    assert "texture_charts" not in report and not meshes.current_mesh().has_wedge_tex_coord()
+
+
+def test_texture_of_a_mesh_from_lines_with_other_faces_than_quads(torus):
+    meshes, _ = retrace(torus)
+    report = meshes.apply_filter(MESH, texture_coordinates=True)
+    cells = cells_of(meshes, report)
+    check_mesh(meshes, report)
+    a, b = cells[:, 1] - cells[:, 0], cells[:, 2] - cells[:, 0]
+    assert report["quads"] < report["faces"]
+    assert np.all(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0)  # none is turned over
+    assert report["texture_charts"] < report["faces"] / 4
+
+
+@pytest.mark.parametrize(
+    "ending, triangulate, kept", [("ply", False, True), ("ply", True, True), ("obj", True, True), ("obj", False, False)]
+)
+def test_files_that_keep_texture_coordinates(torus, tmp_path, ending, triangulate, kept):
+    """What the guide's table says. If OBJ files of polygons ever keep theirs, the guide and the help can say so."""
+    meshes = layer_of(torus)
+    meshes.apply_filter(PIPELINE, texture_coordinates=True, triangulate=triangulate, target_vertices=150, **QUICK)
+    expected = meshes.current_mesh().wedge_tex_coord_matrix()
+    file = str(tmp_path / f"textured.{ending}")
+    meshes.save_current_mesh(file)
+    loaded = pymeshlab.MeshSet()
+    loaded.load_new_mesh(file)
+    found = loaded.current_mesh().wedge_tex_coord_matrix()
+    assert found.shape == expected.shape and np.allclose(found, expected, atol=1e-6) == kept
+
+
 def test_lines_survive_an_obj_file_but_not_their_attributes(traced, tmp_path):
     meshes, report = traced
     meshes.save_current_mesh(str(tmp_path / "lines.obj"))

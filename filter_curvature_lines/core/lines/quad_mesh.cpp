@@ -194,9 +194,7 @@ QuadMeshResult buildQuadMesh(
 		result.mesh = withConvexFaces(result.mesh);
 	onFeature.resize(result.mesh.vertexCount(), 0);
 	result.mesh = withQuads(result.mesh, options.quads, onFeature);
-	if (options.triangulate)
-		result.mesh = triangulated(result.mesh);
-	result.topology = topologyOf(result.mesh);
+	finish(result, {}, options); // nothing is known of creases
 	progress.report(1.0);
 	return result;
 }

@@ -1,4 +1,4 @@
-// Holes from their rims; concave faces and polygons by the splitter.
+// Holes from their rims; concave faces by the splitter.
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_finishing.h"
 
@@ -9,8 +9,10 @@
 #include "point_cloud.h"
 #include "polygon_mesh.h"
 #include "polygon_splitting.h"
+#include "polygon_triangulation.h"
 #include "quad_completion.h"
 #include "quad_subdivision.h"
+#include "texture_charts.h"
 
 namespace curvature_lines {
 
@@ -60,13 +62,6 @@ PolygonMesh withConvexFaces(const PolygonMesh& mesh)
 	return splitter.mesh();
 }
 
-PolygonMesh triangulated(const PolygonMesh& mesh)
-{
-	PolygonSplitter splitter(mesh);
-	splitter.triangulate();
-	return splitter.mesh();
-}
-
 PolygonMesh withQuads(const PolygonMesh& mesh, QuadKind kind, std::vector<char>& onFeature)
 {
 	switch (kind) {
@@ -77,6 +72,27 @@ PolygonMesh withQuads(const PolygonMesh& mesh, QuadKind kind, std::vector<char>&
 	default:
 		return mesh;
 	}
+}
+
+void finish(FinishedMesh& result, std::vector<char> onFeature, const MeshFinishingOptions& options)
+{
+	TextureCoordinates& texture = result.texture;
+	if (options.textureCoordinates) {
+		onFeature.resize(result.mesh.vertexCount(), 0);
+		texture = textureCoordinates(result.mesh, bentEdgesBetween(result.mesh, onFeature));
+	}
+	if (options.triangulate) {
+		PolygonTriangulation cut = triangulatePolygons(result.mesh);
+		if (options.textureCoordinates) {
+			texture.corners = cornersOfTriangles(result.mesh, texture.corners, cut);
+			std::vector<Index> chart;
+			for (const Index polygon : cut.polygon)
+				chart.push_back(texture.chart[polygon]);
+			texture.chart = std::move(chart);
+		}
+		result.mesh = std::move(cut.triangles);
+	}
+	result.topology = topologyOf(result.mesh);
 }
 
 } // namespace curvature_lines

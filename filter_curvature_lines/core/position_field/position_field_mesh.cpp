@@ -201,9 +201,7 @@ PositionFieldMeshResult buildPositionFieldMesh(
 			break;
 		result.unsoundFaces = untangleFaces(fitted, curvature, onFeature, result.mesh);
 	}
-	if (options.mesh.triangulate)
-		result.mesh = triangulated(result.mesh);
-	result.topology = topologyOf(result.mesh);
+	finish(result, std::move(onFeature), options.mesh);
 	return result;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_finishing.h"
 
+#include <cstddef>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -76,10 +77,37 @@ TEST(WithConvexFaces, CutsAtTheReflexCorner)
 
 TEST(Triangulated, HasOnlyTriangles)
 {
-	const MeshTopology topology = topologyOf(triangulated(gridWithHole(4, 2)));
+	FinishedMesh         result;
+	MeshFinishingOptions options;
+	options.triangulate = true;
+	result.mesh         = gridWithHole(4, 2);
+	finish(result, {}, options);
+	const MeshTopology& topology = result.topology;
 	EXPECT_EQ(topology.triangles, topology.faces);
 	EXPECT_EQ(topology.triangles, 24);
 	EXPECT_EQ(topology.boundaryLoops, 2);
+	EXPECT_EQ(result.mesh.faceCount(), 24);
+	EXPECT_EQ(result.texture.corners.cols(), 0);
+}
+
+// Of polygons and of their triangles.
+TEST(Finish, TextureCoordinatesOnRequest)
+{
+	for (const bool triangulate : {false, true}) {
+		FinishedMesh         result;
+		MeshFinishingOptions options;
+		options.triangulate        = triangulate;
+		options.textureCoordinates = true;
+		result.mesh                = gridWithHole(4, 2);
+		finish(result, std::vector<char>(25, 1), options);
+		EXPECT_EQ(result.texture.charts, 1) << "marked, but flat";
+		EXPECT_EQ(result.texture.cells, 4);
+		EXPECT_EQ(
+			result.texture.corners.cols(), static_cast<Index>(result.mesh.faces.indices.size()));
+		EXPECT_EQ(result.texture.chart.size(), static_cast<std::size_t>(result.mesh.faceCount()));
+		EXPECT_EQ(result.texture.corners.minCoeff(), 0.0);
+		EXPECT_EQ(result.texture.corners.maxCoeff(), 1.0);
+	}
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,11 @@ constexpr int    directions = 8;
 constexpr double steps[]    = {0.3, 0.1};
 // In mean edges: projections go no farther.
 constexpr double farthest = 0.3;
+// Nor do vertices, from where they have been at first: step after step, and with edges that grow on the way, one would leave
+// the surface.
+constexpr double longestWay = 1.0;
+// Nor farther from the points than that, or than they have been: the surface of a few points is known near them only.
+constexpr double fromPoints = 0.5;
 
 class Untangling {
 public:
@@ -48,11 +54,16 @@ public:
 		const std::vector<char>& fixed,
 		PolygonMesh&             mesh) :
 			m_index(index), m_curvature(curvature), m_fixed(fixed), m_mesh(mesh),
+			m_home(mesh.vertices), m_edge(mesh.vertexCount()), m_off(mesh.vertexCount()),
 			m_faces(mesh.vertexCount())
 	{
 		for (Index f = 0; f < mesh.faceCount(); ++f)
 			for (const Index v : mesh.faces[f])
 				m_faces[v].push_back(f);
+		for (Index v = 0; v < mesh.vertexCount(); ++v)
+			m_edge[v] = meanEdge(v);
+		for (Index v = 0; v < mesh.vertexCount(); ++v)
+			m_off[v] = std::max(fromPoints * m_edge[v], distanceFromPoints(v));
 	}
 
 	Index run()
@@ -104,6 +115,13 @@ private:
 		return sum / (2.0 * double(m_faces[v].size()));
 	}
 
+	double distanceFromPoints(Index v) const
+	{
+		const Vector3d p = m_home.col(v);
+		return (m_index.cloud().positions.col(closestOnSide(m_index, p, m_mesh.normals.col(v))) - p)
+		    .norm();
+	}
+
 	bool improve(Index v)
 	{
 		const Vector3d position = m_mesh.vertices.col(v), normal = m_mesh.normals.col(v);
@@ -115,7 +133,7 @@ private:
 			if (isBetterAt(v, position + share * (mean - position), before, position, normal))
 				return true;
 		const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
-		const double   edge = meanEdge(v);
+		const double   edge = m_edge[v];
 		for (const double step : steps)
 			for (int k = 0; k < directions; ++k) {
 				const double   angle = 2.0 * double(EIGEN_PI) * k / directions;
@@ -131,16 +149,15 @@ private:
 	bool isBetterAt(
 		Index v, const Vector3d& p, double before, const Vector3d& position, const Vector3d& normal)
 	{
-		const SurfaceSample sample = projectToSurface(
-			m_index.cloud(),
-			m_curvature,
-			p,
-			closestOnSide(m_index, p, normal),
-			ProjectionKind::Mixed);
+		const Index         closest = closestOnSide(m_index, p, normal);
+		const SurfaceSample sample =
+			projectToSurface(m_index.cloud(), m_curvature, p, closest, ProjectionKind::Mixed);
+		const double off       = (sample.position - m_index.cloud().positions.col(closest)).norm();
 		m_mesh.vertices.col(v) = sample.position;
 		m_mesh.normals.col(v)  = sample.normal;
 		// Onto another part of the surface is no step.
-		if ((sample.position - p).norm() < farthest * meanEdge(v) &&
+		if ((sample.position - p).norm() < farthest * m_edge[v] &&
+		    (sample.position - m_home.col(v)).norm() < longestWay * m_edge[v] && off <= m_off[v] &&
 		    worstAround(v) > before + leastGain)
 			return true;
 		m_mesh.vertices.col(v) = position;
@@ -158,13 +175,16 @@ private:
 			sum +=
 				(m_mesh.vertices.col(face[(at + 1) % face.size()]) - m_mesh.vertices.col(v)).norm();
 		}
-		return sum / double(m_faces[v].size());
+		return sum / double(std::max<std::size_t>(m_faces[v].size(), 1));
 	}
 
 	const CloudIndex&               m_index;
 	const CurvatureField&           m_curvature;
 	const std::vector<char>&        m_fixed;
 	PolygonMesh&                    m_mesh;
+	Eigen::Matrix3Xd                m_home;  // positions at first
+	Eigen::VectorXd                 m_edge;  // mean length at every vertex at first
+	Eigen::VectorXd                 m_off;   // how far every vertex may be from the points
 	std::vector<std::vector<Index>> m_faces; // around every vertex
 };
 

@@ -42,6 +42,8 @@ constexpr Index fewestPoints = 4;
 constexpr double verticesPerDivided = 4.0;
 // Relative, of a number of vertices that nobody has asked for.
 constexpr double automaticTolerance = 0.2;
+// Over the distance from the closest point, which the surface is not farther than, but for noise.
+constexpr double farthestProjection = 2.0;
 // Projections of a vertex on a rim.
 constexpr int rimSteps = 2;
 // Rounds of unsound faces that go.
@@ -97,9 +99,13 @@ void projectVertices(
 			return;
 		Eigen::Vector3d p       = mesh.vertices.col(v);
 		const Index     closest = closestOnSide(index, p, mesh.normals.col(v));
+		// The surface of a few points is known near them only.
+		const double most = farthestProjection * (cloud.positions.col(closest) - p).norm();
 		if (!rim[v]) {
 			const SurfaceSample sample =
 				projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
+			if ((sample.position - p).norm() > most)
+				return;
 			mesh.vertices.col(v) = sample.position;
 			mesh.normals.col(v)  = sample.normal;
 			return;
@@ -108,7 +114,10 @@ void projectVertices(
 		for (int step = 0; step < rimSteps; ++step) {
 			const SurfaceSample sample =
 				projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
-			p += (sample.position - p).dot(sample.normal) * sample.normal;
+			const double along = (sample.position - p).dot(sample.normal);
+			if (std::abs(along) > most)
+				break;
+			p += along * sample.normal;
 			mesh.normals.col(v) = sample.normal;
 		}
 		mesh.vertices.col(v) = p;

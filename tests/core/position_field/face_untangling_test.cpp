@@ -91,6 +91,40 @@ TEST(FaceUntangling, TurnsFacesBackOnTheSurface)
 	EXPECT_LE(moved, 8 * 5); // corners of unsound faces at most
 }
 
+// Vertices that change places at random can hardly be mended. None goes farther than an edge all the same.
+TEST(FaceUntangling, NoVertexGoesFarWhereNothingHelps)
+{
+	const ExactCloud                exact   = torusCloud();
+	const samples::AnalyticSurface& surface = samples::surface("torus");
+	const PolygonMesh               sound   = torusMesh();
+	PolygonMesh                     mesh    = sound;
+	samples::Random                 random(7, 0);
+	for (Index v = 300; v < 420; ++v) {
+		const Index other    = 300 + static_cast<Index>(random.index(120));
+		mesh.vertices.col(v) = sound.vertices.col(other);
+		mesh.normals.col(v) =
+			random.index(2) == 0 ? sound.normals.col(other) : Vector3d(-sound.normals.col(other));
+	}
+	const PolygonMesh before = mesh;
+	EXPECT_GT(
+		untangleFaces(exact.cloud, exact.field, std::vector<char>(mesh.vertexCount(), 0), mesh),
+		20);
+	std::vector<double> edge(mesh.vertexCount(), 0.0); // mean at first; every vertex has four faces
+	for (Index f = 0; f < before.faceCount(); ++f)
+		for (Index k = 0; k < 4; ++k) {
+			const Index a = before.faces[f][k], b = before.faces[f][(k + 1) % 4];
+			edge[a] += (before.vertices.col(a) - before.vertices.col(b)).norm() / 4.0;
+		}
+	Index moved = 0;
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
+		const double step = (mesh.vertices.col(v) - before.vertices.col(v)).norm();
+		moved += step > 0.0;
+		EXPECT_LT((mesh.vertices.col(v) - surface.project(mesh.vertices.col(v))).norm(), 0.02);
+		EXPECT_LE(step, edge[v]);
+	}
+	EXPECT_GT(moved, 20);
+}
+
 TEST(FaceUntangling, SoundMeshesAndFixedVerticesStay)
 {
 	const ExactCloud  exact = torusCloud();

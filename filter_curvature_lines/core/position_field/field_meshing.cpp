@@ -15,7 +15,6 @@
 #include "curvature_field.h"
 #include "feature_alignment.h"
 #include "line_density.h"
-#include "phase_pins.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
 #include "position_field.h"

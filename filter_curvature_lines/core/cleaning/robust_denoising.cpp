@@ -17,6 +17,7 @@
 #include "cloud_index.h"
 #include "covering_patch.h"
 #include "doubled_layers.h"
+#include "move_limit.h"
 #include "near_duplicates.h"
 #include "neighborhoods.h"
 #include "point_cloud.h"
@@ -74,15 +75,6 @@ constexpr double fewestPatches = 6.0;
 // Derived: bias grows with the fourth power of the radius, variance as (noise spacing / radius)^2, so that the best
 // radius is proportional to (noise spacing)^(1/5).
 constexpr double unitExponent = 0.2;
-
-// The noise moves one point in 16 000 by more than wholeMove deviations; such moves become smaller, and from noMove on the
-// point stays. By experiment on the shapes of a public denoising set and on fillets: on exact CAD parts of 50 000 points
-// a quarter of the error is left that moves of ten deviations and a twentieth of a spacing made.
-constexpr double wholeMove           = 4.0;
-constexpr double noMove              = 6.0;
-constexpr Index  movesAround         = 48;
-constexpr double deviationOverMedian = 1.4826; // of absolute values
-constexpr double mostOfEstimate      = 2.5;
 
 constexpr Index fewestPoints = 8;    // a quadric and a residual
 constexpr Index testPoints   = 5000; // that scores are taken from
@@ -178,7 +170,6 @@ private:
 	std::vector<double> shareOfSecond(
 		const Candidate& first, const Candidate& second, const std::vector<Index>& targets) const;
 	void sharpen(Candidate& smooth, const Progress& progress) const;
-	void limitMoves(BlendedSurface& blend) const;
 	bool fits(const std::vector<double>& radii) const;
 	void findUnits();
 	std::vector<double> radii(double factor) const; // of units
@@ -557,28 +548,6 @@ void RobustDenoiser::sharpen(Candidate& smooth, const Progress& progress) const
 	mix(smooth, sharp, shareOfSecond(smooth, sharp, targets), targets);
 }
 
-// What would move much farther than the noise is shape narrower than the smallest patches, or was given to the wrong face
-// or sheet. The noise of a place is also told by half of the moves around, because its estimate is too smooth for noise
-// that changes within a few spacings.
-void RobustDenoiser::limitMoves(BlendedSurface& blend) const
-{
-	const Eigen::Matrix3Xd moves     = blend.positions - m_input.cloud.positions;
-	const Eigen::VectorXd  distances = moves.colwise().norm();
-	parallelFor(size(), {}, [&](Index i) {
-		double deviation = m_input.pointDeviation[i];
-		if (distances[i] <= wholeMove * deviation)
-			return;
-		std::vector<double> around;
-		for (const Index j : m_start.search.nearest(m_input.cloud.positions.col(i), movesAround))
-			around.push_back(distances[j]);
-		deviation = std::clamp(
-			deviationOverMedian * medianInPlace(around), deviation, mostOfEstimate * deviation);
-		const double excess = (noMove - distances[i] / deviation) / (noMove - wholeMove);
-		blend.positions.col(i) =
-			m_input.cloud.positions.col(i) + std::clamp(excess, 0.0, 1.0) * moves.col(i);
-	});
-}
-
 RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 {
 	findPointDeviation(progress.sub(0.05, 0.15, stage));
@@ -586,7 +555,8 @@ RobustDenoisingResult RobustDenoiser::run(const Progress& progress)
 	findPointsOffEdges(progress.sub(0.15, 0.2, stage));
 	Candidate cleaned = smoothCandidate(progress.sub(0.2, 0.7, stage));
 	sharpen(cleaned, progress.sub(0.7, 1.0, stage));
-	limitMoves(cleaned.blend);
+	limitMoves(
+		m_input.cloud.positions, m_start.search, m_input.pointDeviation, cleaned.blend.positions);
 	RobustDenoisingResult result;
 	result.positions      = m_input.order.restore(cleaned.blend.positions);
 	result.normals        = m_input.order.restore(cleaned.blend.normals);

@@ -47,7 +47,7 @@ public:
 			std::sort(bad.begin(), bad.end());
 			const Index before = gone;
 			for (const auto& entry : bad)
-				if (!m_loops[entry.second].empty() && jacobianOf(entry.second) < 0.0)
+				if (m_loops[entry.second].size() == 4 && jacobianOf(entry.second) < 0.0)
 					gone += collapse(entry.second);
 			if (gone == before)
 				break;

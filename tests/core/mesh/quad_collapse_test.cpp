@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -75,6 +76,26 @@ TEST(QuadCollapse, FoldsBecomeFewerAndTheSurfaceStays)
 		EXPECT_EQ(
 			topology.nonmanifoldEdges + topology.nonmanifoldVertices + topology.boundaryEdges, 0);
 	}
+}
+
+// As in a mesh that has other faces than quads: those may become one with a quad, and are no quads then.
+TEST(QuadCollapse, OtherFacesAroundAreNoHarm)
+{
+	samples::Random random(8, 0);
+	Index           all = 0;
+	for (std::uint64_t seed = 0; seed < 10; ++seed) {
+		PolygonMesh mesh = test::randomPolygons(test::triangulatedSphere(3).mesh, 5, 0.6, seed);
+		fold(0.1, 0.8, random, mesh);
+		const Index       before = unsoundOf(mesh);
+		std::vector<char> onFeature(mesh.vertexCount(), 0);
+		all += collapseUnsoundQuads(onFeature, mesh);
+		const MeshTopology topology = topologyOf(mesh);
+		EXPECT_LE(unsoundOf(mesh), before);
+		EXPECT_EQ(topology.eulerCharacteristic, 2);
+		EXPECT_EQ(
+			topology.nonmanifoldEdges + topology.nonmanifoldVertices + topology.boundaryEdges, 0);
+	}
+	EXPECT_GT(all, 10);
 }
 
 TEST(QuadCollapse, SoundFacesStay)

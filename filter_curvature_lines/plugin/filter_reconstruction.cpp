@@ -22,6 +22,7 @@
 #include "raw_curvatures.h"
 #include "reconstruction.h"
 #include "shared_parameters.h"
+#include "sides_report.h"
 
 namespace curvature_lines {
 
@@ -129,7 +130,8 @@ void parameters(ParameterTable& table, Options& options)
 		options.estimateNormals,
 		Choice{{"If Missing", "Never", "Always"}},
 		"Estimate normals",
-		"Whether to compute normals from the positions (plane fits, oriented outward).<ul>"
+		"Whether to compute normals from the positions (plane fits, their sides by winding "
+		"numbers).<ul>"
 		"<li><b>If Missing</b>: when most points have none</li>"
 		"<li><b>Never</b>: use those of the layer</li>"
 		"<li><b>Always</b>: replace those of the layer</li></ul>");
@@ -242,13 +244,15 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	LayerPoints      points = readPoints(source);
 	FilterResults    results;
 	Stopwatch        total;
+	EstimatedNormals sides;
 	const bool       estimated = mustEstimate(options.estimateNormals, points.normals);
 	if (estimated) {
-		points.normals = estimateNormalsWhereFinite(
+		sides = estimateNormalsWhereFinite(
 			points.positions,
 			points.normals,
 			{},
 			context.progress.sub(0.0, 0.1, "Estimating normals"));
+		points.normals = sides.normals;
 		results.seconds("normals", total.seconds());
 	}
 	else {
@@ -286,6 +290,8 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("crossings", result.mesh.crossings);
 	reportMesh(results, topology, result.mesh.texture);
 	reportLosses(results, result, options.pipeline.tracing.targetVertices, prepared.diagonal);
+	if (estimated)
+		reportSides(results, sides);
 	reportDoubledLayers(results, result.doubledShare);
 	reportUnstructured(
 		results, result.unstructuredShare, options.pipeline.outliers.rejectUnstructured);

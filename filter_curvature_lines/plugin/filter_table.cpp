@@ -7,6 +7,7 @@
 namespace curvature_lines {
 
 // Each in a file of its own, filter_*.cpp.
+FilterSpec estimateNormalsFilter();
 FilterSpec robustCurvatureFilter();
 FilterSpec selectOutliersFilter();
 FilterSpec denoiseFilter();
@@ -22,6 +23,7 @@ FilterSpec rayTraceFilter();
 const std::vector<FilterSpec>& filterTable()
 {
 	static const std::vector<FilterSpec> table = {
+		estimateNormalsFilter(),
 		robustCurvatureFilter(),
 		selectOutliersFilter(),
 		denoiseFilter(),

@@ -18,6 +18,28 @@ def filters() -> dict[str, str]:
 class MeshSet(pymeshlab.MeshSet):
     """``pymeshlab.MeshSet``, with the filters of this package by name and type; the same class when the program runs."""
 
+    def compute_normals_robust_point_cloud(
+        self,
+        *,
+        orientation: Literal["Automatic", "Viewpoint", "Up"] = "Automatic",
+        viewpoint: ArrayLike = ...,
+        flip: bool = False,
+        neighbors: int = 0,
+    ) -> dict[str, float]:
+        """Normals of a cloud that has none, outward also on thin walls.
+
+        orientation: Closed parts get outward normals by winding numbers. Open ones get one side, and this tells which.
+            Automatic: either one; Viewpoint: the one that looks at Viewpoint, as of a scanner; Up: the one that looks
+            along +z, as of terrain
+
+        viewpoint: Viewpoint: where the surface was seen from, in the layer's coordinates.
+
+        flip: Turn all normals round at the end.
+
+        neighbors: Points each plane is fitted to (0 = automatic: 25, and more as far as the cloud is noisy; at most
+            1000).
+        """
+
     def compute_curvature_robust_per_vertex(
         self,
         *,
@@ -308,8 +330,8 @@ class MeshSet(pymeshlab.MeshSet):
         smooth_directions: Traced Lines: smooth the field of principal directions before tracing. A position field
             always is, as far as the directions are uncertain.
 
-        estimate_normals: Whether to compute normals from the positions (plane fits, oriented outward). If Missing: when
-            most points have none; Never: use those of the layer; Always: replace those of the layer
+        estimate_normals: Whether to compute normals from the positions (plane fits, their sides by winding numbers). If
+            Missing: when most points have none; Never: use those of the layer; Always: replace those of the layer
 
         scale_mode: How large the region is that each estimate looks at. Adaptive: found from the cloud, around every
             point: as large as the noise asks for and as small as the shape does; Paper: a fixed number of local point

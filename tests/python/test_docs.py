@@ -44,7 +44,7 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
     meshes = layer([[0, 0, 0]])
     filters = pytest.importorskip("pymeshlab_curvature_lines").filters()
     known = {name for each in filters for name in (each, *meshes.filter_parameter_values(each))}
-    known |= {*ATTRIBUTES, "line_id", "line_family", "line_closed", "line_arc_length", "moved"}
+    known |= {*ATTRIBUTES, "line_id", "line_family", "line_closed", "line_arc_length", "moved", "normal_doubt"}
     known |= {"debootstrap", "libgl1", "libopengl0"}
     known |= {
         "uncovered_share",
@@ -56,6 +56,8 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         "inverted_repaired",
         "dropped_components",
         "doubled_share",
+        "doubtful_share",
+        "open_share",
         "unstructured_share",
         "warnings",
         "texture_cells",

@@ -1,0 +1,65 @@
+# Estimate and Orient Normals through the real plugin: sides, doubt, open surfaces, layers with holes in their data.
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pytest
+
+from helpers import PIPELINE, generate, layer
+
+NORMALS = "compute_normals_robust_point_cloud"
+
+
+def estimate(positions, given=None, **options):
+    meshes = layer(positions, given)
+    report = getattr(meshes, NORMALS)(**options)
+    mesh = meshes.current_mesh()
+    return mesh.vertex_normal_matrix(), mesh.vertex_custom_scalar_attribute_array("normal_doubt"), report
+
+
+@pytest.mark.parametrize("name", ["torus", "ellipsoid"])
+def test_closed_surfaces_look_outward(name):
+    cloud = generate(name, 2000, noise=0.003, seed=1)
+    normals, doubt, report = estimate(cloud["positions"])
+    assert np.mean(np.sum(normals * cloud["normals"], axis=1) <= 0) < 0.002
+    assert np.allclose(np.linalg.norm(normals, axis=1), 1)
+    assert doubt.min() >= 0 and doubt.max() <= 1
+    assert report["doubtful_share"] == pytest.approx(np.mean(doubt > 0.4))
+    assert report["doubtful_share"] < 0.05 and report["open_share"] == 0 and report["warnings"] == 0
+
+
+def test_the_side_of_former_normals_has_no_say_and_flip_turns_all():
+    cloud = generate("sphere", 1000, seed=2)
+    outward = estimate(cloud["positions"], -cloud["normals"])[0]
+    assert np.all(np.sum(outward * cloud["normals"], axis=1) > 0)
+    assert np.array_equal(estimate(cloud["positions"], flip=True)[0], -outward)
+
+
+def test_open_surfaces_look_where_they_are_told_to():
+    random = np.random.default_rng(3)
+    xy = random.uniform(-1, 1, (1500, 2))
+    points = np.column_stack([xy, 0.1 * np.sin(3 * xy[:, 0])])
+    up, _, report = estimate(points, orientation="Up")
+    assert up[:, 2].min() > 0 and report["open_share"] == 1
+    down = estimate(points, orientation="Viewpoint", viewpoint=[0.0, 0.0, -4.0])[0]
+    assert down[:, 2].max() < 0
+
+
+def test_noise_without_a_surface_is_told():
+    report = estimate(np.random.default_rng(4).random((2000, 3)))[2]
+    assert report["doubtful_share"] > 0.05 and report["warnings"] == 1
+
+
+def test_points_that_are_nowhere_are_left_alone():
+    cloud = generate("sphere", 600, seed=5)
+    points = cloud["positions"].copy()
+    points[7] = np.nan
+    normals, doubt, report = estimate(points)
+    assert report["invalid"] == 1 and doubt[7] == 0
+    rest = np.arange(600) != 7
+    assert np.all(np.sum(normals[rest] * cloud["normals"][rest], axis=1) > 0)
+
+
+def test_the_pipeline_says_what_is_in_doubt():
+    cloud = generate("torus", 1500, seed=6)
+    meshes = layer(cloud["positions"])
+    report = getattr(meshes, PIPELINE)()
+    assert report["normals_estimated"] and report["doubtful_share"] < 0.05

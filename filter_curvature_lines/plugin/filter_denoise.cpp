@@ -5,6 +5,7 @@
 #include "denoising.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "parameter_table.h"
@@ -120,6 +121,7 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& option
 	}
 	results.real("moved_rms", denoised.rmsMove * prepared.diagonal);
 	results.real("moved_max", denoised.maxMove * prepared.diagonal);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -62,26 +62,24 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	FilterResults   results;
 	const Stopwatch total;
 
-	EstimatedNormals estimate = estimateNormalsWhereFinite(
-		points.positions, points.normals, options.normals, context.progress);
+	// Any normals do here: all that is asked for is the cloud's distinct points, or why it has none of use.
+	points.normals.colwise()         = Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+	const PreparedCloud     prepared = prepareCloud(points.positions, points.normals);
+	NormalEstimationOptions own      = options.normals;
+	own.viewpoint                    = prepared.toUnit(own.viewpoint);
+	EstimatedNormals estimate = estimateNormals(prepared.cloud.positions, own, context.progress);
 	if (options.flip)
 		estimate.normals = -estimate.normals;
-	points.normals = estimate.normals; // the former ones have no say in the side
-	PreparedCloud own;                 // each point stands for itself
-	own.cloud.positions = points.positions;
-	own.cloud.normals   = estimate.normals;
-	Index finite        = 0;
-	for (Index i = 0; i < points.size(); ++i) {
-		const bool usable = points.positions.col(i).allFinite();
-		finite += usable;
-		own.source.push_back(i);
-		own.representative.push_back(usable ? i : -1);
-	}
-	writeNormals(layer, points, own, estimate.normals);
-	writeAttribute(layer, points, "normal_doubt", estimate.doubt);
+	Eigen::VectorXd doubt = Eigen::VectorXd::Zero(points.size());
+	for (Index i = 0; i < points.size(); ++i)
+		if (const Index r = prepared.representative[i]; r >= 0)
+			doubt[i] = estimate.doubt[r];
+	writeNormals(layer, points, prepared, estimate.normals);
+	writeAttribute(layer, points, "normal_doubt", doubt);
 
 	results.count("points", points.size());
-	results.count("invalid", points.size() - finite);
+	results.count("invalid", prepared.nonFinite);
+	results.count("duplicates", prepared.duplicates);
 	results.count("warnings", 0);
 	reportSides(results, estimate);
 	results.seconds("total", total.seconds());

@@ -5,6 +5,7 @@
 #include "curvature_output.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "m_weighted_curvature.h"
@@ -80,6 +81,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	writeCurvatureOutput(layer, points, prepared.diagonal, values, options.output);
 	reportCurvature(results, prepared, minimum, values);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

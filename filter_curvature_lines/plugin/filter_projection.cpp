@@ -9,6 +9,7 @@
 #include "curvature_driven_projection.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "host_types.h"
 #include "layer_conversion.h"
@@ -160,6 +161,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("iterations", projected.iterations);
 	results.real("moved_rms", moves.rms);
 	results.real("moved_max", moves.largest);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "line_network.h"
@@ -111,6 +112,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("lines", lines.lines());
 	results.count("crossings", built.crossings);
 	reportMesh(results, topology, built.texture);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

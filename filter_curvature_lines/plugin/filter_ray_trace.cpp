@@ -19,6 +19,7 @@
 #include "curvature_field.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "host_types.h"
 #include "layer_conversion.h"
@@ -271,6 +272,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("pixels", std::ptrdiff_t(picture.width) * picture.height);
 	results.count("hits", picture.hits);
 	results.count("segments", static_cast<std::ptrdiff_t>(lines.segments.size()));
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

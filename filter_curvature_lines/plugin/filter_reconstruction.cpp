@@ -10,6 +10,7 @@
 #include "cleaning_report.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "layer_curvature.h"
@@ -295,6 +296,8 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	reportDoubledLayers(results, result.doubledShare);
 	reportUnstructured(
 		results, result.unstructuredShare, options.pipeline.outliers.rejectUnstructured);
+	if (!estimated)
+		reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

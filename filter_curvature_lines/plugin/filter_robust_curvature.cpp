@@ -4,6 +4,7 @@
 #include "curvature_output.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "parameter_table.h"
@@ -63,6 +64,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	reportCurvature(results, estimate->prepared, estimate->index.minimum(), values);
 	results.count("iterations", estimate->field.iterations);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

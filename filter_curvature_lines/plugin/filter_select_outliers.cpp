@@ -6,6 +6,7 @@
 #include "cleaning_report.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "outlier_rejection.h"
@@ -132,6 +133,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("deleted", options.deleteSelected ? deleteVertices(layer.cm, selected) : 0);
 	results.real("noise", rejected.heightDeviation * prepared.diagonal);
 	reportUnstructured(results, rejected.unstructuredShare, options.rejection.rejectUnstructured);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -7,6 +7,7 @@
 #include "creases.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "parameter_table.h"
@@ -94,6 +95,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("concave_curves", totals.concave);
 	results.count("corners", static_cast<Index>(creases.corners.size()));
 	results.real("length", totals.length);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -7,6 +7,7 @@
 #include "direction_smoothing.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "layer_curvature.h"
@@ -68,6 +69,7 @@ FilterResults apply(const FilterContext& context, const DirectionSmoothingOption
 	results.real("energy_final", smoothed.finalEnergy);
 	results.real("mean_turn", smoothed.meanTurn);
 	results.flag("curvature_reused", curvature.reused);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -7,6 +7,7 @@
 #include "curvature_field.h"
 #include "filter_results.h"
 #include "filter_table.h"
+#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "line_network.h"
@@ -216,6 +217,7 @@ FilterResults apply(const FilterContext& context, const Options& given)
 	results.count("edges", layer.cm.en);
 	results.real("epsilon", lines.epsilon);
 	results.flag("curvature_reused", curvature.reused);
+	reportGivenNormals(results, points.normalCheck);
 	results.seconds("total", total.seconds());
 	return results;
 }

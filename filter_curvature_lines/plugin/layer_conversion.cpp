@@ -90,8 +90,10 @@ LayerPoints readOrientedPoints(const MeshModel& layer)
 	if ((points.normals.array() == 0.0).all())
 		throw MLException(
 			"the points of layer '" + layer.label() +
-			"' have no normals. Run 'Compute normals for point sets' "
-			"(compute_normal_for_point_clouds) first, and check that they point outward.");
+			"' have no normals. Run 'Estimate and Orient Normals' "
+			"(compute_normals_robust_point_cloud) or MeshLab's 'Compute normals for point sets' "
+			"first, and check that they point outward.");
+	points.normalCheck = checkNormals(points.positions, points.normals);
 	return points;
 }
 

@@ -11,6 +11,7 @@
 
 #include <common/ml_document/mesh_document.h>
 
+#include "normal_check.h"
 #include "point_cloud.h"
 
 namespace curvature_lines {
@@ -29,13 +30,14 @@ void requireSameMatrix(const MeshModel& a, const MeshModel& b, const QString& na
 struct LayerPoints {
 	Eigen::Matrix3Xd         positions, normals; // 3 x N, as they are: any length, maybe not finite
 	std::vector<std::size_t> vertex;             // N: index in cm.vert
+	NormalCheck              normalCheck;        // of readOrientedPoints()
 
 	Index size() const { return static_cast<Index>(vertex.size()); }
 };
 
 // Throws when there is no vertex.
 LayerPoints readPoints(const MeshModel& layer);
-// The same, and throws when no vertex has a normal.
+// The same with a check of the normals, and throws when no vertex has one.
 LayerPoints readOrientedPoints(const MeshModel& layer);
 
 // Per vertex: one scalar as quality.

@@ -17,6 +17,7 @@ from helpers import (
     FILTERS,
     M_WEIGHTED,
     MESH,
+    NORMALS,
     OUTLIERS,
     PIPELINE,
     PROJECT,
@@ -42,6 +43,10 @@ QUADS = ["Pure", "Dominant", "Subdivided"]
 CLOUD, OTHER_CLOUD, LINES = range(3)  # the layers of document()
 
 CONTRACT = {
+    NORMALS: Filter("Estimate and Orient Normals", {
+        "orientation": Choice(["Automatic", "Viewpoint", "Up"]), "viewpoint": Point((0, 0, 0), (0, 0, 9)), "flip": Flag(False),
+        "neighbors": Number(0, 30),
+    }),
     CURVATURE: Filter("Robust Curvature (M-Estimation)", {
         "scale_mode": SCALES, "region_scale": Number(3.0, 4.0), "max_iterations": Number(30, 12), "feature_gate": Flag(True),
         "boundary_threshold": Number(2.5, 3.0), "correct_normals": Flag(False), "scalar": SCALARS, "colorize": Flag(True),

@@ -13,6 +13,7 @@ sys.path.insert(0, str(CHECKOUT / "sample_data"))
 
 import analytic_surfaces  # noqa: E402
 
+NORMALS = "compute_normals_robust_point_cloud"
 CURVATURE = "compute_curvature_robust_per_vertex"
 OUTLIERS = "compute_selection_point_cloud_outliers_by_curvature"
 DENOISE = "apply_coord_point_cloud_robust_denoising"
@@ -44,6 +45,8 @@ FILTERS = load_plugin()
 SURFACES = [PROJECT, RAY_TRACE]  # of points: they take the layers of clouds as parameters
 # All others but the one that takes lines, so that a new filter is among them
 ON_CLOUDS = [name for name in FILTERS if name not in (MESH, *SURFACES)]
+
+NEED_NORMALS = [name for name in ON_CLOUDS + SURFACES if name != NORMALS]
 
 
 def generate(name, points, *, scanned=False, **options):

@@ -16,6 +16,8 @@ LONGEST_FUNCTION = 90  # lines between the braces
 
 # Units without a test file of their own, with the one that tests them.
 PARTS_OF_A_STAGE = {
+    "normals/side_domains": "normals/normal_estimation",
+    "normals/winding_field": "normals/normal_estimation",
     "cleaning/outlier_groups": "cleaning/outlier_rejection",
     "cleaning/robust_outliers": "cleaning/outlier_rejection",
     "fitting/face_projection": "cleaning/robust_denoising",

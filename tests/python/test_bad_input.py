@@ -18,6 +18,8 @@ from helpers import (
     INVALID,
     M_WEIGHTED,
     MESH,
+    NEED_NORMALS,
+    NORMALS,
     ON_CLOUDS,
     OUTLIERS,
     PIPELINE,
@@ -89,13 +91,13 @@ def test_empty_layer_is_refused(name):
     refused(meshes, name, "is empty")
 
 
-@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
+@pytest.mark.parametrize("name", NEED_NORMALS)
 def test_missing_normals_are_refused_with_the_cure(torus, name):
     parameters = {"estimate_normals": "Never"} if name == PIPELINE else {}
     refused(layer(torus["positions"]), name, "Compute normals for point sets", **parameters)
 
 
-@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
+@pytest.mark.parametrize("name", NEED_NORMALS)
 def test_mostly_missing_normals_are_refused(torus, name):
     normals = torus["normals"].copy()
     normals[: len(normals) // 2 + 100] = 0.0
@@ -110,6 +112,8 @@ def test_no_layer_at_all(name):
 
 
 OUT_OF_RANGE = [
+    (NORMALS, "orientation", [-1, 3]),
+    (NORMALS, "neighbors", [-1, 1001]),
     (CURVATURE, "region_scale", [0.5, 21.0, float("nan")]),
     (CURVATURE, "max_iterations", [0, 1001]),
     (CURVATURE, "boundary_threshold", [0.9, 1e6]),

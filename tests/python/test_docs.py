@@ -57,6 +57,8 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         "dropped_components",
         "doubled_share",
         "doubtful_share",
+        "normals_disagreeing",
+        "normals_torn",
         "open_share",
         "unstructured_share",
         "warnings",

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers import PIPELINE, generate, layer
-
-NORMALS = "compute_normals_robust_point_cloud"
+from helpers import DENOISE, NORMALS, PIPELINE, generate, layer
 
 
 def estimate(positions, given=None, **options):
@@ -63,3 +61,22 @@ def test_the_pipeline_says_what_is_in_doubt():
     meshes = layer(cloud["positions"])
     report = getattr(meshes, PIPELINE)()
     assert report["normals_estimated"] and report["doubtful_share"] < 0.05
+
+
+def told(positions, normals):
+    report = getattr(layer(positions, normals), DENOISE)()
+    return report["normals_disagreeing"], report["normals_torn"], report["warnings"]
+
+
+def test_given_normals_that_cannot_be_right_are_told():
+    cloud = generate("torus", 2000, noise=0.002, seed=7)
+    points, normals = cloud["positions"], cloud["normals"]
+    assert told(points, normals) == (0, 0, 0)
+    assert told(points, np.tile([0.0, 0.0, 1.0], (2000, 1)))[2] >= 1
+    random = np.random.default_rng(8).standard_normal((2000, 3))
+    disagreeing, _, warnings = told(points, random / np.linalg.norm(random, axis=1, keepdims=True))
+    assert disagreeing > 0.3 and warnings >= 1
+    sides = np.where(np.random.default_rng(9).random(2000) < 0.1, -1.0, 1.0)[:, None]
+    disagreeing, torn, warnings = told(points, sides * normals)
+    assert disagreeing == 0 and torn > 0.1 and warnings >= 1
+    assert told(points, 5 * normals)[2] == 1

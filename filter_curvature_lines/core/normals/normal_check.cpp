@@ -77,13 +77,14 @@ NormalCheck checkNormals(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3
 	bool   equal = true;
 	for (std::size_t k = 0; k < verdicts.size(); ++k) {
 		const Verdict& v = verdicts[k];
-		result.notUnit += double(v.notUnit) / double(verdicts.size());
+		result.notUnit += double(v.notUnit);
 		clear += double(v.clear);
 		disagree += double(v.disagrees);
 		pairs += double(v.pairs);
 		torn += double(v.torn);
 		equal = equal && unit(sample[k]).dot(unit(sample[0])) > 1.0 - 1e-9;
 	}
+	result.notUnit /= double(verdicts.size());
 	result.disagreeing = clear > 0.0 ? disagree / clear : 0.0;
 	result.torn        = pairs > 0.0 ? torn / pairs : 0.0;
 	result.allEqual    = equal && result.disagreeing > 0.1;

@@ -13,6 +13,7 @@
 #include "point_cloud.h"
 #include "progress.h"
 #include "shuffled_order.h"
+#include "side_domains.h"
 
 namespace curvature_lines {
 
@@ -24,7 +25,6 @@ constexpr Index  planeNeighbors = 25;
 constexpr Index  pairNeighbors  = 8;
 constexpr double clearPlane = 0.1; // variance across the plane over the smaller one in it, at most
 constexpr double halfAngle  = 0.5; // cosine of 60 degrees
-constexpr double parallel = 0.8, tangential = 0.35; // as for the edges of side domains
 
 struct Verdict {
 	bool  notUnit = false, clear = false, disagrees = false;
@@ -65,9 +65,7 @@ NormalCheck checkNormals(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3
 		v.disagrees = v.clear && std::abs(normal.dot(axes.eigenvectors().col(0))) < halfAngle;
 		for (std::size_t j = 0; j < std::min<std::size_t>(near.size(), pairNeighbors + 1); ++j) {
 			const Eigen::Vector3d d = points.col(near[j]) - points.col(i), other = unit(near[j]);
-			const double          lift = std::max(std::abs(normal.dot(d)), std::abs(other.dot(d)));
-			if (near[j] == i || std::abs(normal.dot(other)) < parallel ||
-			    !(lift < tangential * d.norm()))
+			if (near[j] == i || !areOnOnePiece(d, normal, other))
 				continue;
 			++v.pairs;
 			v.torn += normal.dot(other) < 0.0;

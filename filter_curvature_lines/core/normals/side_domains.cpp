@@ -57,12 +57,9 @@ Edges smoothEdges(
 		result.weight[i] =
 			(positions.col(near.back()) - positions.col(i)).squaredNorm() / (4.0 * edgeNeighbors);
 		for (Index j : near) {
-			const Eigen::Vector3d d      = positions.col(j) - positions.col(i);
-			const double          cosine = normals.col(i).dot(normals.col(j));
-			const double          lift =
-				std::max(std::abs(normals.col(i).dot(d)), std::abs(normals.col(j).dot(d)));
-			if (j > i && std::abs(cosine) > parallel && lift < tangential * d.norm())
-				rows[i].push_back({i, j, cosine > 0.0});
+			if (j > i &&
+			    areOnOnePiece(positions.col(j) - positions.col(i), normals.col(i), normals.col(j)))
+				rows[i].push_back({i, j, normals.col(i).dot(normals.col(j)) > 0.0});
 		}
 	});
 	for (const auto& row : rows)
@@ -183,6 +180,12 @@ Index turnOpenPieces(
 }
 
 } // namespace
+
+bool areOnOnePiece(const Eigen::Vector3d& d, const Eigen::Vector3d& a, const Eigen::Vector3d& b)
+{
+	const double lift = std::max(std::abs(a.dot(d)), std::abs(b.dot(d)));
+	return std::abs(a.dot(b)) > parallel && lift < tangential * d.norm();
+}
 
 SideDomains alignSideDomains(
 	const Eigen::Matrix3Xd&                      positions,

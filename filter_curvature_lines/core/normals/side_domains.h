@@ -13,6 +13,9 @@
 
 namespace curvature_lines {
 
+// Whether two points, d apart, with these unit normals lie on one smooth piece of surface, whichever sides the normals are of.
+bool areOnOnePiece(const Eigen::Vector3d& d, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 struct SideDomains {
 	Eigen::Matrix3Xd normals;    // 3 x N
 	double undecidedShare = 0.0; // of points on pieces that are as good inside out (open surfaces)

@@ -109,12 +109,9 @@ WindingField windingField(
 
 	WindingField result;
 	for (std::size_t k = 0; k < kept.size(); ++k) {
-		const double share = noisyPairShare(positions, neighbors, kept[k]);
-		if (k == 0)
-			result.noisyPairs = share;
 		result.width      = keptWidths[k];
 		result.directions = kept[k];
-		if (share <= allowedNoisyPairs)
+		if (noisyPairShare(positions, neighbors, kept[k]) <= allowedNoisyPairs)
 			break;
 	}
 	return result;

@@ -16,7 +16,6 @@ namespace curvature_lines {
 struct WindingField {
 	Eigen::Matrix3Xd directions;  // 3 x N, unit; zero where the field is degenerate
 	double           width = 1.0; // of the kernel, in spacings: follows the noise of the cloud
-	double noisyPairs = 0.0; // share of neighbours that face each other at the width of one spacing
 };
 
 // positions: 3 x N, lengths of the order of 1; spacing: of the points, > 0.

@@ -5,9 +5,9 @@
 #include "denoising.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 
@@ -79,7 +79,7 @@ void parameters(ParameterTable& table, DenoisingOptions& options)
 FilterResults apply(const FilterContext& context, const DenoisingOptions& options)
 {
 	MeshModel&          layer  = currentLayer(context.document);
-	const LayerPoints   points = readOrientedPoints(layer);
+	const LayerPoints   points = readOrientedPoints(layer, context.progress);
 	const Stopwatch     total;
 	const PreparedCloud prepared  = prepareCloud(points.positions, points.normals);
 	const auto          robust    = inUnitFrame(options.robust, prepared);
@@ -121,7 +121,7 @@ FilterResults apply(const FilterContext& context, const DenoisingOptions& option
 	}
 	results.real("moved_rms", denoised.rmsMove * prepared.diagonal);
 	results.real("moved_max", denoised.maxMove * prepared.diagonal);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -5,11 +5,12 @@
 #include "filter_results.h"
 #include "filter_table.h"
 #include "help_text.h"
+#include "host_types.h"
 #include "layer_conversion.h"
 #include "normal_estimation.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
-#include "sides_report.h"
 
 namespace curvature_lines {
 
@@ -58,24 +59,19 @@ void parameters(ParameterTable& table, Options& options)
 FilterResults apply(const FilterContext& context, const Options& options)
 {
 	MeshModel&      layer  = currentLayer(context.document);
-	LayerPoints     points = readPoints(layer);
+	const LayerPoints points = readPoints(layer);
 	FilterResults   results;
 	const Stopwatch total;
 
-	// Any normals do here: all that is asked for is the cloud's distinct points, or why it has none of use.
-	points.normals.colwise()         = Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-	const PreparedCloud     prepared = prepareCloud(points.positions, points.normals);
-	NormalEstimationOptions own      = options.normals;
-	own.viewpoint                    = prepared.toUnit(own.viewpoint);
-	EstimatedNormals estimate = estimateNormals(prepared.cloud.positions, own, context.progress);
+	const PreparedCloud prepared = withoutNormals(points.positions);
+	EstimatedNormals    estimate =
+		estimateNormalsOfAll(prepared, points.normals, options.normals, context.progress);
 	if (options.flip)
 		estimate.normals = -estimate.normals;
-	Eigen::VectorXd doubt = Eigen::VectorXd::Zero(points.size());
 	for (Index i = 0; i < points.size(); ++i)
-		if (const Index r = prepared.representative[i]; r >= 0)
-			doubt[i] = estimate.doubt[r];
-	writeNormals(layer, points, prepared, estimate.normals);
-	writeAttribute(layer, points, "normal_doubt", doubt);
+		if (prepared.representative[i] >= 0)
+			layer.cm.vert[points.vertex[i]].N() = toPoint(estimate.normals.col(i));
+	writeAttribute(layer, points, "normal_doubt", estimate.doubt);
 
 	results.count("points", points.size());
 	results.count("invalid", prepared.nonFinite);

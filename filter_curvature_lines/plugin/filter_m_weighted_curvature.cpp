@@ -5,11 +5,11 @@
 #include "curvature_output.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "m_weighted_curvature.h"
 #include "neighborhoods.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "raw_curvatures.h"
@@ -64,7 +64,7 @@ void parameters(ParameterTable& table, Options& options)
 FilterResults apply(const FilterContext& context, const Options& options)
 {
 	MeshModel&                  layer  = currentLayer(context.document);
-	const LayerPoints           points = readOrientedPoints(layer);
+	const LayerPoints           points = readOrientedPoints(layer, context.progress);
 	FilterResults               results;
 	Stopwatch                   total;
 	const PreparedCloud         prepared = prepareCloud(points.positions, points.normals);
@@ -81,7 +81,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	writeCurvatureOutput(layer, points, prepared.diagonal, values, options.output);
 	reportCurvature(results, prepared, minimum, values);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points, true);
 	results.seconds("total", total.seconds());
 	return results;
 }

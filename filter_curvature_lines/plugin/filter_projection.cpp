@@ -9,10 +9,10 @@
 #include "curvature_driven_projection.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "host_types.h"
 #include "layer_conversion.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "point_set_surface.h"
@@ -119,7 +119,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	const MeshModel& proxy   = layerWithId(context.document, options.proxyLayer, "proxy_mesh");
 	requireSameMatrix(control, proxy, "'control_mesh' and 'proxy_mesh'");
 
-	const LayerPoints   points = readOrientedPoints(control);
+	const LayerPoints   points = readOrientedPoints(control, context.progress);
 	const LayerPoints   moving = readPoints(proxy);
 	FilterResults       results;
 	Stopwatch           total;
@@ -161,7 +161,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("iterations", projected.iterations);
 	results.real("moved_rms", moves.rms);
 	results.real("moved_max", moves.largest);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "line_network.h"
 #include "mesh_finishing.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "polygon_layer.h"
@@ -82,7 +82,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 			"on.");
 	requireSameMatrix(lineLayer, *cloudLayer, "the lines and the point cloud");
 
-	const LayerPoints   points = readOrientedPoints(*cloudLayer);
+	const LayerPoints   points = readOrientedPoints(*cloudLayer, context.progress);
 	Stopwatch           total, stage;
 	FilterResults       results;
 	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
@@ -112,7 +112,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("lines", lines.lines());
 	results.count("crossings", built.crossings);
 	reportMesh(results, topology, built.texture);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -19,12 +19,12 @@
 #include "curvature_field.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "host_types.h"
 #include "layer_conversion.h"
 #include "m_weighted_curvature.h"
 #include "moving_least_squares.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "point_set_surface.h"
@@ -239,7 +239,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	if (lineLayer != &layer)
 		requireSameMatrix(layer, *lineLayer, "the cloud and the layer of 'lines'");
 
-	const LayerPoints points = readOrientedPoints(layer);
+	const LayerPoints points = readOrientedPoints(layer, context.progress);
 	FilterResults     results;
 	Stopwatch         total, stage;
 	// Rays next to each other read points next to each other.
@@ -272,7 +272,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("pixels", std::ptrdiff_t(picture.width) * picture.height);
 	results.count("hits", picture.hits);
 	results.count("segments", static_cast<std::ptrdiff_t>(lines.segments.size()));
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

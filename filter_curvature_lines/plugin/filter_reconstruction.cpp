@@ -10,11 +10,11 @@
 #include "cleaning_report.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "layer_curvature.h"
 #include "normal_estimation.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "polygon_layer.h"
@@ -23,7 +23,6 @@
 #include "raw_curvatures.h"
 #include "reconstruction.h"
 #include "shared_parameters.h"
-#include "sides_report.h"
 
 namespace curvature_lines {
 
@@ -242,23 +241,12 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	pipeline.keepLines             = options.keepIntermediateLayers;
 
 	const MeshModel& source = currentLayer(context.document);
-	LayerPoints      points = readPoints(source);
-	FilterResults    results;
-	Stopwatch        total;
-	EstimatedNormals sides;
-	const bool       estimated = mustEstimate(options.estimateNormals, points.normals);
-	if (estimated) {
-		sides = estimateNormalsWhereFinite(
-			points.positions,
-			points.normals,
-			{},
-			context.progress.sub(0.0, 0.1, "Estimating normals"));
-		points.normals = sides.normals;
+	Stopwatch         total;
+	FilterResults     results;
+	const LayerPoints points = readOrientedPoints(
+		source, context.progress.sub(0.0, 0.1, ""), options.estimateNormals);
+	if (points.estimated)
 		results.seconds("normals", total.seconds());
-	}
-	else {
-		points = readOrientedPoints(source);
-	}
 
 	PreparedCloud              prepared = prepareCloud(points.positions, points.normals);
 	const ReconstructionResult result =
@@ -284,20 +272,16 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("points", points.size());
 	results.count("invalid", prepared.nonFinite + prepared.zeroNormals);
 	results.count("duplicates", prepared.duplicates);
-	results.flag("normals_estimated", estimated);
 	results.real("noise", result.noise * prepared.diagonal);
 	results.real("moved_rms", result.rmsMove * prepared.diagonal);
 	reportStages(results, result);
 	results.count("crossings", result.mesh.crossings);
 	reportMesh(results, topology, result.mesh.texture);
 	reportLosses(results, result, options.pipeline.tracing.targetVertices, prepared.diagonal);
-	if (estimated)
-		reportSides(results, sides);
 	reportDoubledLayers(results, result.doubledShare);
 	reportUnstructured(
 		results, result.unstructuredShare, options.pipeline.outliers.rejectUnstructured);
-	if (!estimated)
-		reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }
@@ -316,7 +300,6 @@ FilterSpec reconstructionFilter()
 		"between "
 		"lines along the directions built." +
 			helpInput +
-			" This filter can estimate missing normals itself."
 			"<br><br><b>Writes</b> a new layer '<i>curvature-aligned mesh</i>' of polygons (in "
 			"MeshLab: "
 			"triangles whose inner edges are hidden) and makes it current; the input stays as it "

@@ -4,9 +4,9 @@
 #include "curvature_output.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "raw_curvatures.h"
@@ -42,7 +42,7 @@ void parameters(ParameterTable& table, Options& options)
 FilterResults apply(const FilterContext& context, const Options& options)
 {
 	MeshModel&    layer  = currentLayer(context.document);
-	LayerPoints   points = readOrientedPoints(layer);
+	LayerPoints   points = readOrientedPoints(layer, context.progress);
 	FilterResults results;
 	Stopwatch     total, stage;
 	const auto    estimate =
@@ -64,7 +64,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 
 	reportCurvature(results, estimate->prepared, estimate->index.minimum(), values);
 	results.count("iterations", estimate->field.iterations);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points, true);
 	results.seconds("total", total.seconds());
 	return results;
 }

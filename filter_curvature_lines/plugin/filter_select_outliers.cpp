@@ -6,9 +6,9 @@
 #include "cleaning_report.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
+#include "normals_report.h"
 #include "outlier_rejection.h"
 #include "outlier_result.h"
 #include "parameter_table.h"
@@ -99,7 +99,7 @@ Index deleteVertices(CMeshO& mesh, const std::vector<std::size_t>& doomed)
 FilterResults apply(const FilterContext& context, const Options& options)
 {
 	MeshModel&          layer  = currentLayer(context.document);
-	const LayerPoints   points = readOrientedPoints(layer);
+	const LayerPoints   points = readOrientedPoints(layer, context.progress);
 	Stopwatch           total;
 	const PreparedCloud prepared = prepareCloud(points.positions, points.normals);
 	const OutlierResult rejected =
@@ -133,7 +133,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("deleted", options.deleteSelected ? deleteVertices(layer.cm, selected) : 0);
 	results.real("noise", rejected.heightDeviation * prepared.diagonal);
 	reportUnstructured(results, rejected.unstructuredShare, options.rejection.rejectUnstructured);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -7,9 +7,9 @@
 #include "creases.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "polyline_layer.h"
@@ -58,7 +58,7 @@ void parameters(ParameterTable& table, Options& options)
 FilterResults apply(const FilterContext& context, const Options& options)
 {
 	MeshModel&        cloudLayer = currentLayer(context.document);
-	const LayerPoints points     = readOrientedPoints(cloudLayer);
+	const LayerPoints points     = readOrientedPoints(cloudLayer, context.progress);
 	Stopwatch         total, stage;
 	FilterResults     results;
 	PreparedCloud     prepared = prepareCloud(points.positions, points.normals);
@@ -95,7 +95,7 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	results.count("concave_curves", totals.concave);
 	results.count("corners", static_cast<Index>(creases.corners.size()));
 	results.real("length", totals.length);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

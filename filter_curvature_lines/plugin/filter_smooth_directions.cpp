@@ -7,10 +7,10 @@
 #include "direction_smoothing.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "layer_curvature.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "raw_curvatures.h"
 #include "umbilics.h"
@@ -39,7 +39,7 @@ void parameters(ParameterTable& table, DirectionSmoothingOptions& options)
 FilterResults apply(const FilterContext& context, const DirectionSmoothingOptions& options)
 {
 	MeshModel&           layer  = currentLayer(context.document);
-	const LayerPoints    points = readOrientedPoints(layer);
+	const LayerPoints    points = readOrientedPoints(layer, context.progress);
 	Stopwatch            total, stage;
 	FilterResults        results;
 	const LayerCurvature curvature =
@@ -69,7 +69,7 @@ FilterResults apply(const FilterContext& context, const DirectionSmoothingOption
 	results.real("energy_final", smoothed.finalEnergy);
 	results.real("mean_turn", smoothed.meanTurn);
 	results.flag("curvature_reused", curvature.reused);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points, true);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -7,11 +7,11 @@
 #include "curvature_field.h"
 #include "filter_results.h"
 #include "filter_table.h"
-#include "given_normals_report.h"
 #include "help_text.h"
 #include "layer_conversion.h"
 #include "line_network.h"
 #include "line_tracing.h"
+#include "normals_report.h"
 #include "parameter_table.h"
 #include "point_cloud.h"
 #include "polyline_layer.h"
@@ -152,7 +152,7 @@ FilterResults apply(const FilterContext& context, const Options& given)
 	umbilicOptions.smoothed       = given.smoothDirections;
 
 	MeshModel&        cloudLayer = currentLayer(context.document);
-	const LayerPoints points     = readOrientedPoints(cloudLayer);
+	const LayerPoints points     = readOrientedPoints(cloudLayer, context.progress);
 	Stopwatch         total, stage;
 	FilterResults     results;
 	LayerCurvature    curvature =
@@ -217,7 +217,7 @@ FilterResults apply(const FilterContext& context, const Options& given)
 	results.count("edges", layer.cm.en);
 	results.real("epsilon", lines.epsilon);
 	results.flag("curvature_reused", curvature.reused);
-	reportGivenNormals(results, points.normalCheck);
+	reportNormals(results, points);
 	results.seconds("total", total.seconds());
 	return results;
 }

@@ -10,9 +10,8 @@ namespace curvature_lines {
 // Short: MeshLab shows all of it above the parameters, and a screen has only so many lines.
 inline const QString helpInput =
 	"<br><br><b>Input.</b> A point cloud with normals that point outward; of a mesh, the vertices. "
-	"Points with non-finite coordinates or without a normal take no part. No normals? Run "
-	"<i>Compute "
-	"normals for point sets</i> first.";
+	"Points with non-finite coordinates or without a normal take no part. If most points have no "
+	"normal, all are estimated, as by <i>Estimate and Orient Normals</i>.";
 
 inline const QString helpConventions = "<br><br><b>Conventions.</b> Convex is positive: a unit "
 									   "sphere has k1 = k2 = +1; k1 &gt;= k2; PD1, PD2 "

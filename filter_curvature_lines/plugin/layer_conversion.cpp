@@ -13,7 +13,10 @@
 #include <vcg/complex/algorithms/update/color.h>
 
 #include "host_types.h"
+#include "normal_check.h"
+#include "normal_estimation.h"
 #include "point_cloud.h"
+#include "progress.h"
 #include "raw_curvatures.h"
 
 namespace curvature_lines {
@@ -84,15 +87,26 @@ LayerPoints readPoints(const MeshModel& layer)
 	return points;
 }
 
-LayerPoints readOrientedPoints(const MeshModel& layer)
+LayerPoints
+readOrientedPoints(const MeshModel& layer, const Progress& progress, EstimateNormals when)
 {
 	LayerPoints points = readPoints(layer);
+	if (mustEstimate(when, points.normals)) {
+		points.estimated = estimateNormalsOfAll(
+			withoutNormals(points.positions),
+			points.normals,
+			{},
+			progress.sub(0.0, 1.0, "Estimating normals"));
+		points.normals.swap(points.estimated->normals);
+		points.estimated->normals.resize(3, 0);
+		return points;
+	}
 	if ((points.normals.array() == 0.0).all())
 		throw MLException(
 			"the points of layer '" + layer.label() +
-			"' have no normals. Run 'Estimate and Orient Normals' "
-			"(compute_normals_robust_point_cloud) or MeshLab's 'Compute normals for point sets' "
-			"first, and check that they point outward.");
+			"' have no normals. Set 'estimate_normals' to If Missing, or run 'Estimate and Orient "
+			"Normals' (compute_normals_robust_point_cloud) or MeshLab's 'Compute normals for point sets' "
+			"first.");
 	points.normalCheck = checkNormals(points.positions, points.normals);
 	return points;
 }

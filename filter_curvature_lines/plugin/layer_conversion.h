@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@
 #include <common/ml_document/mesh_document.h>
 
 #include "normal_check.h"
+#include "normal_estimation.h"
 #include "point_cloud.h"
+#include "progress.h"
 
 namespace curvature_lines {
 
@@ -30,15 +33,21 @@ void requireSameMatrix(const MeshModel& a, const MeshModel& b, const QString& na
 struct LayerPoints {
 	Eigen::Matrix3Xd         positions, normals; // 3 x N, as they are: any length, maybe not finite
 	std::vector<std::size_t> vertex;             // N: index in cm.vert
-	NormalCheck              normalCheck;        // of readOrientedPoints()
+	// Of readOrientedPoints(): what is wrong with the layer's normals, or how those in their place were found.
+	NormalCheck                     normalCheck;
+	std::optional<EstimatedNormals> estimated; // its normals have moved to `normals`
 
 	Index size() const { return static_cast<Index>(vertex.size()); }
 };
 
 // Throws when there is no vertex.
 LayerPoints readPoints(const MeshModel& layer);
-// The same with a check of the normals, and throws when no vertex has one.
-LayerPoints readOrientedPoints(const MeshModel& layer);
+// The same with a check of the normals, or with estimated ones where the layer lacks them, which it then still does.
+// Throws when no vertex has one and they are not to be estimated.
+LayerPoints readOrientedPoints(
+	const MeshModel& layer,
+	const Progress&  progress = {},
+	EstimateNormals  when     = EstimateNormals::IfMissing);
 
 // Per vertex: one scalar as quality.
 void writeQuality(MeshModel& layer, const LayerPoints& points, const Eigen::VectorXd& values);

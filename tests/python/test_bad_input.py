@@ -18,7 +18,6 @@ from helpers import (
     INVALID,
     M_WEIGHTED,
     MESH,
-    NEED_NORMALS,
     NORMALS,
     ON_CLOUDS,
     OUTLIERS,
@@ -91,18 +90,21 @@ def test_empty_layer_is_refused(name):
     refused(meshes, name, "is empty")
 
 
-@pytest.mark.parametrize("name", NEED_NORMALS)
-def test_missing_normals_are_refused_with_the_cure(torus, name):
-    parameters = {"estimate_normals": "Never"} if name == PIPELINE else {}
-    refused(layer(torus["positions"]), name, "Compute normals for point sets", **parameters)
+def test_missing_normals_are_refused_with_the_cure_where_they_may_not_be_estimated(torus):
+    refused(layer(torus["positions"]), PIPELINE, "Compute normals for point sets", estimate_normals="Never")
 
 
-@pytest.mark.parametrize("name", NEED_NORMALS)
-def test_mostly_missing_normals_are_refused(torus, name):
+def test_mostly_missing_normals_are_refused_where_they_may_not_be_estimated(torus):
     normals = torus["normals"].copy()
     normals[: len(normals) // 2 + 100] = 0.0
-    parameters = {"estimate_normals": "Never"} if name == PIPELINE else {}
-    refused(layer(torus["positions"], normals), name, "ormals for point sets", **parameters)
+    refused(layer(torus["positions"], normals), PIPELINE, "ormals for point sets", estimate_normals="Never")
+
+
+@pytest.mark.parametrize("name", ON_CLOUDS + SURFACES)
+@pytest.mark.parametrize("kind", HOPELESS)
+def test_hopeless_clouds_without_normals_are_refused(name, kind):
+    positions, _, match = HOPELESS[kind]
+    refused(layer(positions), name, match)
 
 
 @pytest.mark.parametrize("name", FILTERS)

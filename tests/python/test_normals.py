@@ -3,7 +3,22 @@
 import numpy as np
 import pytest
 
-from helpers import DENOISE, NORMALS, PIPELINE, generate, layer
+from helpers import (
+    CURVATURE,
+    DENOISE,
+    NEED_NORMALS,
+    NORMALS,
+    OUTLIERS,
+    PIPELINE,
+    PROJECT,
+    RAY_TRACE,
+    SMOOTH,
+    TRACE,
+    generate,
+    layer,
+)
+
+QUICK = {TRACE: {"epsilon": 0.01}, RAY_TRACE: {"image_file": "picture.png", "width": 60, "height": 40}}
 
 
 def estimate(positions, given=None, **options):
@@ -80,3 +95,65 @@ def test_given_normals_that_cannot_be_right_are_told():
     disagreeing, torn, warnings = told(points, sides * normals)
     assert disagreeing == 0 and torn > 0.1 and warnings >= 1
     assert told(points, 5 * normals)[2] == 1
+
+
+def outcome(meshes, name):
+    """What a filter leaves behind, but for the normals of the cloud."""
+    report = meshes.apply_filter(name, **QUICK.get(name, {}))
+    left = [meshes.mesh(0).vertex_matrix(), meshes.mesh(0).vertex_selection_array()]
+    for index in range(1, meshes.mesh_number()):
+        left += [meshes.mesh(index).vertex_matrix(), meshes.mesh(index).edge_matrix()]
+    if name == CURVATURE:
+        left.append(meshes.mesh(0).vertex_custom_scalar_attribute_array("curv_k1"))
+    return report, left
+
+
+@pytest.mark.parametrize("name", NEED_NORMALS)
+def test_filters_estimate_normals_that_are_missing_and_leave_the_layer_without(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    positions = generate("torus", 1500, noise=0.001, seed=10)["positions"]
+    bare, oriented = layer(positions), layer(positions)
+    oriented.apply_filter(NORMALS)
+    report, left = outcome(bare, name)
+    expected_report, expected = outcome(oriented, name)
+    assert report["normals_estimated"] and not expected_report["normals_estimated"]
+    assert report["doubtful_share"] < 0.05 and report["open_share"] == 0
+    for mine, theirs in zip(left, expected, strict=True):
+        assert mine.shape == theirs.shape and np.allclose(mine, theirs, rtol=1e-6, atol=1e-9)
+    if name not in (DENOISE, PROJECT):  # which write normals anyhow
+        assert not bare.mesh(0).vertex_normal_matrix().any()
+
+
+def test_curvature_is_reused_on_a_layer_without_normals():
+    meshes = layer(generate("torus", 1500, seed=11)["positions"])
+    meshes.apply_filter(CURVATURE)
+    assert meshes.apply_filter(SMOOTH)["curvature_reused"]
+
+
+def test_normals_estimated_on_the_way_are_written_when_asked_for():
+    cloud = generate("torus", 1500, seed=12)
+    meshes = layer(cloud["positions"])
+    meshes.apply_filter(CURVATURE, correct_normals=True)
+    assert np.all(np.sum(meshes.current_mesh().vertex_normal_matrix() * cloud["normals"], axis=1) > 0.9)
+
+
+def test_the_sign_of_curvature_is_a_guess_on_open_surfaces_and_that_is_told():
+    xy = np.random.default_rng(13).uniform(-1, 1, (1500, 2))
+    points = np.column_stack([xy, 0.1 * np.sin(3 * xy[:, 0])])
+    report = layer(points).apply_filter(CURVATURE)
+    assert report["open_share"] == 1 and report["warnings"] == 1
+    assert layer(points).apply_filter(OUTLIERS)["warnings"] == 0  # sides make no difference there
+
+
+def test_thin_walls_without_normals_keep_their_points():
+    """Two sheets two spacings apart: no point is an outlier, and denoising leaves each where it is."""
+    random = np.random.default_rng(14)
+    xy = random.uniform(0, 1, (3000, 2))
+    apart = 2.0 / np.sqrt(1500)
+    height = np.where(np.arange(3000) % 2 == 0, 0.0, apart)
+    points = np.column_stack([xy, height + 0.02 * apart * random.normal(size=3000)])
+    assert layer(points).apply_filter(OUTLIERS)["outliers"] < 0.005 * 3000
+    meshes = layer(points)
+    meshes.apply_filter(DENOISE)
+    left = np.abs(meshes.current_mesh().vertex_matrix()[:, 2] - height)
+    assert np.sqrt(np.mean(left**2)) < 0.02 * apart

@@ -274,22 +274,26 @@ bool mustEstimate(EstimateNormals when, const Eigen::Matrix3Xd& normals)
 	return 2 * usable < normals.cols();
 }
 
-EstimatedNormals estimateNormalsWhereFinite(
-	const Eigen::Matrix3Xd&        positions,
-	Eigen::Matrix3Xd               normals,
-	const NormalEstimationOptions& options,
-	const Progress&                progress)
+PreparedCloud withoutNormals(const Eigen::Matrix3Xd& positions)
 {
-	std::vector<Index> finite;
-	for (Index i = 0; i < static_cast<Index>(positions.cols()); ++i)
-		if (positions.col(i).allFinite())
-			finite.push_back(i);
-	EstimatedNormals estimated = estimateNormals(columnsOf(positions, finite), options, progress);
-	Eigen::VectorXd  doubt     = Eigen::VectorXd::Zero(positions.cols());
-	for (std::size_t k = 0; k < finite.size(); ++k) {
-		normals.col(finite[k]) = estimated.normals.col(static_cast<Index>(k));
-		doubt[finite[k]]       = estimated.doubt[static_cast<Index>(k)];
-	}
+	const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(); // any normals do
+	return prepareCloud(positions, up.replicate(1, positions.cols()));
+}
+
+EstimatedNormals estimateNormalsOfAll(
+	const PreparedCloud&    prepared,
+	Eigen::Matrix3Xd        normals,
+	NormalEstimationOptions options,
+	const Progress&         progress)
+{
+	options.viewpoint          = prepared.toUnit(options.viewpoint);
+	EstimatedNormals estimated = estimateNormals(prepared.cloud.positions, options, progress);
+	Eigen::VectorXd  doubt     = Eigen::VectorXd::Zero(normals.cols());
+	for (Index i = 0; i < static_cast<Index>(normals.cols()); ++i)
+		if (const Index kept = prepared.representative[i]; kept >= 0) {
+			normals.col(i) = estimated.normals.col(kept);
+			doubt[i]       = estimated.doubt[kept];
+		}
 	estimated.doubt   = std::move(doubt);
 	estimated.normals = std::move(normals);
 	return estimated;

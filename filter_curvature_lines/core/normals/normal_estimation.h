@@ -42,11 +42,15 @@ enum class EstimateNormals {
 
 bool mustEstimate(EstimateNormals when, const Eigen::Matrix3Xd& normals); // 3 x N, any length
 
-// estimateNormals() for clouds with points whose positions (3 x N) are not finite: these keep theirs of `normals`.
-EstimatedNormals estimateNormalsWhereFinite(
-	const Eigen::Matrix3Xd&        positions,
-	Eigen::Matrix3Xd               normals,
-	const NormalEstimationOptions& options  = {},
-	const Progress&                progress = {});
+// The distinct finite points of a raw cloud (3 x N), all with one normal. Throws InputError as prepareCloud() does.
+PreparedCloud withoutNormals(const Eigen::Matrix3Xd& positions);
+
+// estimateNormals() of the points prepared.cloud holds (its normals have no say) for all N raw ones: duplicates share what
+// their kept point gets, points that are not finite keep theirs of `normals` (3 x N). Options in model units.
+EstimatedNormals estimateNormalsOfAll(
+	const PreparedCloud&    prepared,
+	Eigen::Matrix3Xd        normals,
+	NormalEstimationOptions options  = {},
+	const Progress&         progress = {});
 
 } // namespace curvature_lines

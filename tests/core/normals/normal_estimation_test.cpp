@@ -94,16 +94,44 @@ TEST(NormalEstimation, MissingNormalsAreEstimatedWhenMostAreMissing)
 TEST(NormalEstimation, PointsThatAreNowhereKeepTheirNormals)
 {
 	const auto             cloud     = sample("sphere");
-	const Eigen::Matrix3Xd estimated = estimateNormals(cloud.positions).normals;
-	Eigen::Matrix3Xd       positions(3, cloud.positions.cols() + 1);
+	const Eigen::Matrix3Xd none      = Eigen::Matrix3Xd::Zero(3, cloud.positions.cols());
+	const Eigen::Matrix3Xd estimated =
+		estimateNormalsOfAll(withoutNormals(cloud.positions), none).normals;
+	Eigen::Matrix3Xd positions(3, cloud.positions.cols() + 1);
 	positions << cloud.positions.leftCols(1), Eigen::Vector3d::Constant(INFINITY),
 		cloud.positions.rightCols(cloud.positions.cols() - 1);
 	Eigen::Matrix3Xd given        = Eigen::Matrix3Xd::Zero(3, positions.cols());
 	given.col(1)                  = Eigen::Vector3d(1, 2, 3);
-	const Eigen::Matrix3Xd result = estimateNormalsWhereFinite(positions, given).normals;
+	const Eigen::Matrix3Xd result = estimateNormalsOfAll(withoutNormals(positions), given).normals;
 	EXPECT_EQ(Eigen::Vector3d(result.col(1)), Eigen::Vector3d(1, 2, 3));
 	EXPECT_EQ(result.col(0), estimated.col(0));
 	EXPECT_EQ(result.rightCols(estimated.cols() - 1), estimated.rightCols(estimated.cols() - 1));
+}
+
+TEST(NormalEstimation, DuplicatesShareTheirNormalAndTheViewpointIsInModelUnits)
+{
+	const auto       cloud = sample("sphere");
+	Eigen::Matrix3Xd positions(3, cloud.positions.cols() + 1);
+	positions << cloud.positions, cloud.positions.col(5);
+	positions = (40.0 * positions).colwise() + Eigen::Vector3d(100, 0, 0);
+	NormalEstimationOptions options;
+	const PreparedCloud     prepared = withoutNormals(positions);
+	EXPECT_EQ(prepared.duplicates, 1);
+	const EstimatedNormals estimated = estimateNormalsOfAll(prepared, positions, options);
+	EXPECT_EQ(estimated.normals.col(positions.cols() - 1), estimated.normals.col(5));
+	EXPECT_EQ(estimated.doubt.size(), positions.cols());
+
+	// A flat square at x = 100: the side is that of the viewpoint, which is near it in these units alone.
+	Eigen::Matrix3Xd square(3, 400);
+	for (int i = 0; i < 400; ++i)
+		square.col(i) = Eigen::Vector3d(100.0, i % 20, i / 20);
+	options.openSides = OpenSides::Viewpoint;
+	for (const double side : {-1.0, 1.0}) {
+		options.viewpoint = Eigen::Vector3d(100.0 + side, 10.0, 10.0);
+		const Eigen::Matrix3Xd normals =
+			estimateNormalsOfAll(withoutNormals(square), square, options).normals;
+		EXPECT_GT((side * normals.row(0)).minCoeff(), 0.99);
+	}
 }
 
 namespace {

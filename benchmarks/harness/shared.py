@@ -23,6 +23,7 @@ from helpers import (  # noqa: E402, F401
     FEATURES,
     M_WEIGHTED,
     MESH,
+    NORMALS,
     OUTLIERS,
     PIPELINE,
     PROJECT,

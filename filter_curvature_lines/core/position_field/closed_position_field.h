@@ -18,8 +18,9 @@ namespace curvature_lines {
 
 struct ClosingOptions {
 	IntegerFlowOptions flow;
-	// PositionFieldOptions::fitDrift, with closed whole numbers: 3 to 100 make no difference in a prototype.
-	double drift = 30.0;
+	// PositionFieldOptions::fitDrift, with closed whole numbers. With 3, ten real shapes lie 15 % nearer to the points
+	// than with 30, and fewer triangles turn over: lines that must reach a place may swerve to it.
+	double drift = 3.0;
 	// Times singular points may move on to the triangle that their crossing is in.
 	int moves = 2;
 };

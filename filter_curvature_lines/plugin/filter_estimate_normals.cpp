@@ -58,10 +58,10 @@ void parameters(ParameterTable& table, Options& options)
 
 FilterResults apply(const FilterContext& context, const Options& options)
 {
-	MeshModel&      layer  = currentLayer(context.document);
+	MeshModel&        layer  = currentLayer(context.document);
 	const LayerPoints points = readPoints(layer);
-	FilterResults   results;
-	const Stopwatch total;
+	FilterResults     results;
+	const Stopwatch   total;
 
 	const PreparedCloud prepared = withoutNormals(points.positions);
 	EstimatedNormals    estimate =

@@ -240,11 +240,11 @@ FilterResults apply(const FilterContext& context, const Options& options)
 	ReconstructionOptions pipeline = options.pipeline;
 	pipeline.keepLines             = options.keepIntermediateLayers;
 
-	const MeshModel& source = currentLayer(context.document);
+	const MeshModel&  source = currentLayer(context.document);
 	Stopwatch         total;
 	FilterResults     results;
-	const LayerPoints points = readOrientedPoints(
-		source, context.progress.sub(0.0, 0.1, ""), options.estimateNormals);
+	const LayerPoints points =
+		readOrientedPoints(source, context.progress.sub(0.0, 0.1, ""), options.estimateNormals);
 	if (points.estimated)
 		results.seconds("normals", total.seconds());
 

@@ -104,9 +104,9 @@ readOrientedPoints(const MeshModel& layer, const Progress& progress, EstimateNor
 	if ((points.normals.array() == 0.0).all())
 		throw MLException(
 			"the points of layer '" + layer.label() +
-			"' have no normals. Set 'estimate_normals' to If Missing, or run 'Estimate and Orient "
-			"Normals' (compute_normals_robust_point_cloud) or MeshLab's 'Compute normals for point sets' "
-			"first.");
+			"' have no normals. Set 'estimate_normals' to If Missing, or first run 'Estimate and "
+			"Orient Normals' (compute_normals_robust_point_cloud) or MeshLab's "
+			"'Compute normals for point sets'.");
 	points.normalCheck = checkNormals(points.positions, points.normals);
 	return points;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -16,8 +17,10 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
+#include "mesh_quality.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
+#include "quad_subdivision.h"
 #include "triangle_mesh.h"
 
 namespace curvature_lines::test {
@@ -92,6 +95,54 @@ randomPolygons(const TriangleMesh& mesh, std::size_t largest, double share, std:
 		std::remove_if(loops.begin(), loops.end(), [](const VertexLoop& l) { return l.empty(); }),
 		loops.end());
 	return {mesh.vertices, mesh.vertexNormals(), NeighborLists::fromRows(loops)};
+}
+
+// Quads along the lines of curvature of the torus, so many around its axis and around its tube.
+inline PolygonMesh torusOfQuads(Index around, Index tube)
+{
+	std::vector<Eigen::Vector3d> vertices, normals;
+	std::vector<VertexLoop>      faces;
+	for (Index j = 0; j < tube; ++j)
+		for (Index i = 0; i < around; ++i) {
+			const double          a = 2.0 * EIGEN_PI * i / around, b = 2.0 * EIGEN_PI * j / tube;
+			const Eigen::Vector3d out(std::cos(a), std::sin(a), 0.0);
+			normals.push_back(std::cos(b) * out + std::sin(b) * Eigen::Vector3d::UnitZ());
+			vertices.push_back(out + 0.4 * normals.back());
+			const Index right = (i + 1) % around, up = (j + 1) % tube;
+			faces.push_back(
+				{j * around + i, j * around + right, up * around + right, up * around + i});
+		}
+	return polygonMesh(vertices, normals, faces);
+}
+
+// Quads of a triangulation: each of its triangles cut into three.
+inline PolygonMesh quadsOn(const TriangleMesh& triangles)
+{
+	PolygonMesh       mesh = polygonsOf(triangles);
+	std::vector<char> none(mesh.vertexCount(), 0);
+	return subdivided(mesh, none).mesh;
+}
+
+inline Index unsoundOf(const PolygonMesh& mesh)
+{
+	Index count = 0;
+	for (Index f = 0; f < mesh.faceCount(); ++f)
+		count += scaledJacobian(mesh, f) < 0.0;
+	return count;
+}
+
+// A share of the vertices moves by so many edges in its tangent plane.
+inline void fold(double share, double edges, samples::Random& random, PolygonMesh& mesh)
+{
+	const double edge =
+		(mesh.vertices.col(mesh.faces[0][0]) - mesh.vertices.col(mesh.faces[0][1])).norm();
+	for (Index v = 0; v < mesh.vertexCount(); ++v) {
+		if (random.uniform(0.0, 1.0) > share)
+			continue;
+		const Eigen::Vector3d n = mesh.normals.col(v), x = n.unitOrthogonal(), y = n.cross(x);
+		const double          a = random.uniform(0.0, 6.28);
+		mesh.vertices.col(v) += edges * edge * (std::cos(a) * x + std::sin(a) * y);
+	}
 }
 
 // A vertex for every triangle of a closed triangulation, a face for every vertex.

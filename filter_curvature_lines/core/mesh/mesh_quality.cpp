@@ -63,15 +63,22 @@ double scaledJacobian(
 	for (const Index v : face)
 		normal += normals.col(v);
 	normal.normalize();
-	double least = 1.0;
+	Vector3d own = normal;
+	if (count == 4)
+		own = (vertices.col(face[2]) - vertices.col(face[0]))
+		          .cross(vertices.col(face[3]) - vertices.col(face[1]))
+		          .normalized();
+	double least = 1.0, ownLeast = 1.0;
 	for (Index k = 0; k < count; ++k) {
-		const Vector3d here  = vertices.col(face[k]);
-		const Vector3d ahead = vertices.col(face[(k + 1) % count]) - here;
-		const Vector3d back  = vertices.col(face[(k + count - 1) % count]) - here;
-		const double   sine  = ahead.cross(back).dot(normal);
-		least                = std::min(least, sine / (ahead.norm() * back.norm() + 1e-300));
+		const Vector3d here   = vertices.col(face[k]);
+		const Vector3d ahead  = vertices.col(face[(k + 1) % count]) - here;
+		const Vector3d back   = vertices.col(face[(k + count - 1) % count]) - here;
+		const Vector3d turned = ahead.cross(back) / (ahead.norm() * back.norm() + 1e-300);
+		least                 = std::min(least, turned.dot(normal));
+		ownLeast              = std::min(ownLeast, turned.dot(own));
 	}
-	return least;
+	// Of a quad on a strong bend the normals of its vertices say little about how it lies itself.
+	return ownLeast < 0.0 ? std::min(least, ownLeast) : least;
 }
 
 MeshCoverage

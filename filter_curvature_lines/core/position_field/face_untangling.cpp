@@ -14,6 +14,7 @@
 
 #include "cloud_index.h"
 #include "curvature_field.h"
+#include "mesh_distance.h"
 #include "mesh_quality.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
@@ -45,6 +46,9 @@ constexpr double farthest = 0.3;
 constexpr double longestWay = 1.0;
 // Nor farther from the points than that, or than they have been: the surface of a few points is known near them only.
 constexpr double fromPoints = 0.5;
+// In mean edges: where a vertex of faces that are not turned over has been, the faces are no farther. The vertex at a tip
+// would cut it off.
+constexpr double farthestLoss = 0.2;
 
 class Untangling {
 public:
@@ -63,7 +67,11 @@ public:
 		for (Index v = 0; v < mesh.vertexCount(); ++v)
 			m_edge[v] = meanEdge(v);
 		for (Index v = 0; v < mesh.vertexCount(); ++v)
-			m_off[v] = std::max(fromPoints * m_edge[v], distanceFromPoints(v));
+			if (!fixed[v])
+				m_off[v] = std::max(fromPoints * m_edge[v], distanceFromPoints(v));
+		m_kept.reserve(mesh.vertexCount());
+		for (Index v = 0; v < mesh.vertexCount(); ++v)
+			m_kept.push_back(!fixed[v] && worstAround(v) >= 0.0);
 	}
 
 	Index run()
@@ -158,11 +166,33 @@ private:
 		// Onto another part of the surface is no step.
 		if ((sample.position - p).norm() < farthest * m_edge[v] &&
 		    (sample.position - m_home.col(v)).norm() < longestWay * m_edge[v] && off <= m_off[v] &&
-		    worstAround(v) > before + leastGain)
+		    worstAround(v) > before + leastGain &&
+		    (!m_kept[v] || lossAt(v) < farthestLoss * m_edge[v]))
 			return true;
 		m_mesh.vertices.col(v) = position;
 		m_mesh.normals.col(v)  = normal;
 		return false;
+	}
+
+	// How far the faces around v, and those around them, are from where it has been at first.
+	double lossAt(Index v) const
+	{
+		std::vector<Index> near;
+		for (const Index f : m_faces[v])
+			for (const Index corner : m_mesh.faces[f])
+				near.insert(near.end(), m_faces[corner].begin(), m_faces[corner].end());
+		std::sort(near.begin(), near.end());
+		near.erase(std::unique(near.begin(), near.end()), near.end());
+		std::vector<Vector3d>           corners;
+		std::vector<std::vector<Index>> loops;
+		for (const Index f : near) {
+			loops.emplace_back();
+			for (const Index corner : m_mesh.faces[f]) {
+				loops.back().push_back(static_cast<Index>(corners.size()));
+				corners.emplace_back(m_mesh.vertices.col(corner));
+			}
+		}
+		return distanceToMesh(polygonMesh(corners, corners, loops), m_home.col(v)).distance[0];
 	}
 
 	double meanEdge(Index v) const
@@ -178,13 +208,14 @@ private:
 		return sum / double(std::max<std::size_t>(m_faces[v].size(), 1));
 	}
 
-	const CloudIndex&               m_index;
-	const CurvatureField&           m_curvature;
-	const std::vector<char>&        m_fixed;
-	PolygonMesh&                    m_mesh;
-	Eigen::Matrix3Xd                m_home;  // positions at first
-	Eigen::VectorXd                 m_edge;  // mean length at every vertex at first
-	Eigen::VectorXd                 m_off;   // how far every vertex may be from the points
+	const CloudIndex&        m_index;
+	const CurvatureField&    m_curvature;
+	const std::vector<char>& m_fixed;
+	PolygonMesh&             m_mesh;
+	Eigen::Matrix3Xd         m_home; // positions at first
+	Eigen::VectorXd          m_edge; // mean length at every vertex at first
+	Eigen::VectorXd          m_off;  // how far every vertex may be from the points
+	std::vector<char>        m_kept; // where every vertex has been, the surface is not to be lost
 	std::vector<std::vector<Index>> m_faces; // around every vertex
 };
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quad_collapse.h"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,47 +10,18 @@
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
-#include "mesh_quality.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
 #include "polygon_meshes.h"
-#include "quad_subdivision.h"
-#include "triangle_mesh.h"
 #include "triangulated_surfaces.h"
 
 namespace curvature_lines {
 namespace {
 
 using Eigen::Vector3d;
-
-Index unsoundOf(const PolygonMesh& mesh)
-{
-	Index count = 0;
-	for (Index f = 0; f < mesh.faceCount(); ++f)
-		count += scaledJacobian(mesh, f) < 0.0;
-	return count;
-}
-
-PolygonMesh quadsOn(const TriangleMesh& triangles)
-{
-	PolygonMesh       mesh = test::polygonsOf(triangles);
-	std::vector<char> none(mesh.vertexCount(), 0);
-	return subdivided(mesh, none).mesh;
-}
-
-// A share of the vertices moves by so many edges in its tangent plane.
-void fold(double share, double edges, samples::Random& random, PolygonMesh& mesh)
-{
-	const double edge =
-		(mesh.vertices.col(mesh.faces[0][0]) - mesh.vertices.col(mesh.faces[0][1])).norm();
-	for (Index v = 0; v < mesh.vertexCount(); ++v) {
-		if (random.uniform(0.0, 1.0) > share)
-			continue;
-		const Vector3d n = mesh.normals.col(v), x = n.unitOrthogonal(), y = n.cross(x);
-		const double   a = random.uniform(0.0, 6.28);
-		mesh.vertices.col(v) += edges * edge * (std::cos(a) * x + std::sin(a) * y);
-	}
-}
+using test::fold;
+using test::quadsOn;
+using test::unsoundOf;
 
 TEST(QuadCollapse, FoldsBecomeFewerAndTheSurfaceStays)
 {

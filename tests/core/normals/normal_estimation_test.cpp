@@ -93,8 +93,8 @@ TEST(NormalEstimation, MissingNormalsAreEstimatedWhenMostAreMissing)
 
 TEST(NormalEstimation, PointsThatAreNowhereKeepTheirNormals)
 {
-	const auto             cloud     = sample("sphere");
-	const Eigen::Matrix3Xd none      = Eigen::Matrix3Xd::Zero(3, cloud.positions.cols());
+	const auto             cloud = sample("sphere");
+	const Eigen::Matrix3Xd none  = Eigen::Matrix3Xd::Zero(3, cloud.positions.cols());
 	const Eigen::Matrix3Xd estimated =
 		estimateNormalsOfAll(withoutNormals(cloud.positions), none).normals;
 	Eigen::Matrix3Xd positions(3, cloud.positions.cols() + 1);

@@ -13,6 +13,7 @@
 #include "mesh_quality.h"
 #include "point_cloud.h"
 #include "polygon_mesh.h"
+#include "polygon_meshes.h"
 
 namespace curvature_lines::test {
 namespace {
@@ -30,22 +31,9 @@ ExactCloud torusCloud()
 	return exactCloud(request);
 }
 
-// Quads along the lines of curvature.
 PolygonMesh torusMesh()
 {
-	std::vector<Vector3d>           vertices, normals;
-	std::vector<std::vector<Index>> faces;
-	for (Index j = 0; j < tube; ++j)
-		for (Index i = 0; i < around; ++i) {
-			const double   a = 2.0 * EIGEN_PI * i / around, b = 2.0 * EIGEN_PI * j / tube;
-			const Vector3d out(std::cos(a), std::sin(a), 0.0);
-			normals.push_back(std::cos(b) * out + std::sin(b) * Vector3d::UnitZ());
-			vertices.push_back(out + 0.4 * normals.back());
-			const Index right = (i + 1) % around, up = (j + 1) % tube;
-			faces.push_back(
-				{j * around + i, j * around + right, up * around + right, up * around + i});
-		}
-	return polygonMesh(vertices, normals, faces);
+	return torusOfQuads(around, tube);
 }
 
 Index unsoundFaces(const PolygonMesh& mesh)

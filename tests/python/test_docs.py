@@ -58,6 +58,7 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         "doubled_share",
         "doubtful_share",
         "normals_disagreeing",
+        "normals_estimated",
         "normals_torn",
         "open_share",
         "unstructured_share",

@@ -72,7 +72,7 @@ def test_projection_names_what_is_wrong(dense, torus):
     for parameters, words in [
         ({"control_mesh": 0, "proxy_mesh": 1}, "near the surface"),
         ({"control_mesh": 7, "proxy_mesh": 1}, "no such layer"),
-        ({"control_mesh": 1, "proxy_mesh": 0}, "normal"),
+        ({"control_mesh": 1, "proxy_mesh": 0}, "near the surface"),
         ({"bandwidth": 0.1, "control_mesh": 0, "proxy_mesh": 0}, "bandwidth"),
         ({"resample": 0, "control_mesh": 0, "proxy_mesh": 0}, "resample"),
     ]:
@@ -151,6 +151,9 @@ def test_pictures_name_what_is_wrong(torus, tmp_path):
         with pytest.raises(pymeshlab.PyMeshLabException, match=words):
             meshes.apply_filter(RAY_TRACE, **parameters)
     assert list(tmp_path.iterdir()) == []
-    bare = layer(torus["positions"])
-    with pytest.raises(pymeshlab.PyMeshLabException, match="normal"):
-        bare.apply_filter(RAY_TRACE, image_file=str(tmp_path / "a.png"))
+
+
+def test_picture_of_a_layer_without_normals(torus, tmp_path):
+    with_normals, _ = picture(layer_of(torus), tmp_path / "with.png")
+    report, _ = picture(layer(torus["positions"]), tmp_path / "without.png")
+    assert report["normals_estimated"] and abs(report["hits"] - with_normals["hits"]) <= 48

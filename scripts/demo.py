@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 import pymeshlab
-from pymeshlab_curvature_lines.pipeline import Reconstruction, load_cloud, reconstruct
+from pymeshlab_curvature_lines.files import load_cloud
+from pymeshlab_curvature_lines.pipeline import Reconstruction, reconstruct
 from pymeshlab_curvature_lines.progress import progress_bar
 from pymeshlab_curvature_lines.render import render
 

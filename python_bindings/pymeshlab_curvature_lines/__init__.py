@@ -14,7 +14,9 @@ import ctypes
 from importlib.metadata import version
 from pathlib import Path
 
-__all__ = ["MeshSet", "__version__", "filters", "plugin_path"]
+from .signatures import filters_of
+
+__all__ = ["MeshSet", "__version__", "filters", "load_cloud", "plugin_path", "save_mesh"]
 __version__: str = version("pymeshlab-curvature-lines")
 
 _HOST = "2025.7"
@@ -49,12 +51,19 @@ def _load() -> type:
             pymeshlab.load_plugin(str(plugin_path()))
     except (OSError, pymeshlab.PyMeshLabException) as error:
         raise ImportError(f"pymeshlab {host} refuses {plugin_path()}: {error}") from None
+    described = filters_of(Path(__file__).with_suffix(".pyi"))
     for name, description in descriptions.items():
         method = pymeshlab.bind_function(name)
         method.__doc__ = description
+        if name in described:  # a plugin of another version may have others
+            method.__signature__, method.__doc__ = described[name]
+            method.__name__ = method.__qualname__ = name
         setattr(pymeshlab.MeshSet, name, method)
     return pymeshlab.MeshSet
 
 
 # PyMeshLab's own class, under a name that __init__.pyi can give types to.
 MeshSet = _load()
+
+# After the host is known to be the right one.
+from .files import load_cloud, save_mesh  # noqa: E402

@@ -6,6 +6,9 @@ from typing import Literal
 import pymeshlab
 from numpy.typing import ArrayLike
 
+from .files import load_cloud as load_cloud
+from .files import save_mesh as save_mesh
+
 __all__: list[str]
 __version__: str
 

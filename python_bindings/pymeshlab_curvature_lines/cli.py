@@ -15,16 +15,18 @@ from typing import NamedTuple
 
 import pymeshlab
 
-from . import __version__
-from .pipeline import Reconstruction, load_cloud, reconstruct
+from . import __version__, tables
+from .files import load_cloud
+from .pipeline import Reconstruction, reconstruct
 from .progress import progress_bar
 from .report import number, write_report
 
 METHODS = {"position-field": "Position Field", "traced-lines": "Traced Lines"}
 QUADS = {"pure": "Pure", "dominant": "Dominant", "subdivided": "Subdivided"}
 NORMALS = {"if-missing": "If Missing", "never": "Never", "always": "Always"}
-# What PyMeshLab reads that holds points.
-SUFFIXES = ".ply .obj .off .stl .xyz .pts .ptx .asc .e57 .3ds .3mf .gts .ctm .dae .vmi .wrl .gltf .glb".split()
+# What holds points: files that PyMeshLab reads, and text.
+SUFFIXES = [*".ply .obj .off .stl .ptx .e57 .3ds .3mf .gts .ctm .dae .vmi .wrl .gltf .glb".split(), *tables.SUFFIXES]
+MOST_VERTICES = 10_000_000  # as the filter's own bound
 
 _DESCRIPTION = """\
 Turns point clouds into quad-dominant meshes aligned with their lines of curvature: leaves outliers out, removes
@@ -68,7 +70,11 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     options.add_argument(
-        "input", type=Path, nargs="+", metavar="INPUT", help="files that PyMeshLab reads, or folders of them"
+        "input",
+        type=Path,
+        nargs="+",
+        metavar="INPUT",
+        help="files that PyMeshLab reads, tables of points as text (xyz, txt, csv, pts, asc), or folders of them",
     )
     files = options.add_argument_group("files to write (folders, when there are several clouds)")
     files.add_argument("-o", "--output", type=Path, required=True, metavar="OUTPUT.obj", help="the mesh")
@@ -131,6 +137,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = command.parse_args(arguments)
     if options.target_vertices < 0:
         command.error("--target-vertices must not be negative")
+    if options.target_vertices > MOST_VERTICES:
+        command.error(f"--target-vertices may be {MOST_VERTICES} at most")
     try:
         jobs = list(_jobs(options))
     except ValueError as error:
@@ -179,7 +187,9 @@ def _jobs(options: argparse.Namespace) -> Iterator[Job]:
         raise ValueError(f"only OBJ files keep lines: {options.lines}")
     if options.curvature and options.curvature.suffix.lower() != ".ply":
         raise ValueError(f"only PLY files keep the attributes: {options.curvature}")
-    yield Job(clouds[0], options.output, options.lines, options.curvature, options.report)
+    job = Job(clouds[0], options.output, options.lines, options.curvature, options.report)
+    _refuse_overwriting([job])
+    yield job
 
 
 def _jobs_into_folders(clouds: list[Path], options: argparse.Namespace) -> Iterator[Job]:
@@ -191,14 +201,34 @@ def _jobs_into_folders(clouds: list[Path], options: argparse.Namespace) -> Itera
             raise ValueError(f"several clouds need a folder to write to, not a file: {folder}")
         if not folder.parent.is_dir():
             raise ValueError(f"no such folder: {folder.parent}")
-    for cloud in clouds:
-        yield Job(
+        for given in options.input:
+            if given.is_dir() and given.resolve() == folder.resolve():
+                raise ValueError(f"results in the folder of the clouds would be the next run's input: {folder}")
+    jobs = [
+        Job(
             cloud,
             options.output / f"{cloud.stem}_quads.obj",
             options.lines and options.lines / f"{cloud.stem}_lines.obj",
             options.curvature and options.curvature / f"{cloud.stem}_curvature.ply",
             options.report and options.report / f"{cloud.stem}.html",
         )
+        for cloud in clouds
+    ]
+    _refuse_overwriting(jobs)
+    yield from jobs
+
+
+def _refuse_overwriting(jobs: Sequence[Job]) -> None:
+    """No result may take the place of a cloud, nor of another result; names may differ and be the same file."""
+    clouds = {job.cloud.resolve() for job in jobs}
+    written: set[Path] = set()
+    for file in (file for job in jobs for file in job[1:] if file):
+        place = file.resolve()
+        if place in clouds or any(place.exists() and place.samefile(cloud) for cloud in clouds):
+            raise ValueError(f"would overwrite the input: {file}")
+        if place in written:
+            raise ValueError(f"would overwrite another result: {file}")
+        written.add(place)
 
 
 def _run(job: Job, options: argparse.Namespace) -> None:
@@ -215,7 +245,7 @@ def _run(job: Job, options: argparse.Namespace) -> None:
         "close_holes": options.close_holes,
         "scale_mode": "Adaptive",
     }
-    cloud = load_cloud(job.cloud)
+    cloud = load_cloud(job.cloud, None if options.quiet else lambda what: print(f"{job.cloud.name}: {what}"))
     title = f"{job.cloud.stem[:20]:<22}" if job.mesh != options.output else ""
     with nullcontext() if options.quiet else progress_bar(title) as report:
         result = reconstruct(cloud, report, lines=job.lines is not None, **parameters)

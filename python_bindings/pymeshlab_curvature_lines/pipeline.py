@@ -1,6 +1,6 @@
-# From a file to lines and mesh: what the command line and the demo have in common.
+# From a cloud to lines and mesh: what the command line and the demo have in common.
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading any file as an oriented cloud, and running the whole pipeline on it."""
+"""Running the whole pipeline on a cloud, and saving what comes out."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 
-import numpy as np
 import pymeshlab
 
+from .files import save_mesh, whole_file
 from .progress import progress
 
 Report = Callable[[str, int], None]
@@ -36,15 +37,23 @@ class Reconstruction:
         return self.meshset.mesh(number)
 
     def save(self, number: int, file: str | PathLike[str]) -> None:
+        """OBJ in double precision; other formats as the host writes them."""
+        if Path(file).suffix.lower() == ".obj":
+            save_mesh(self.meshset.mesh(number), file)
+            return
         self.meshset.set_current_mesh(number)
-        self.meshset.save_current_mesh(str(file))
+        with whole_file(file) as partial:
+            self.meshset.save_current_mesh(str(partial))
 
     def save_curvature(self, file: str | PathLike[str]) -> None:
         """The cleaned cloud as a PLY file, with its normals and every ``curv_*`` attribute."""
         self.meshset.set_current_mesh(self.cleaned)
         offered = self.meshset.filter_parameter_values("ply")
         attributes = {name: True for name in offered if name.startswith(_SAVED_ATTRIBUTE)}
-        self.meshset.save_current_mesh(str(file), save_vertex_normal=True, save_vertex_quality=True, **attributes)
+        with whole_file(file) as partial:
+            self.meshset.save_current_mesh(
+                str(partial), save_vertex_normal=True, save_vertex_quality=True, **attributes
+            )
 
     def losses(self) -> list[str]:
         """What the mesh does not show or shows wrong, in sentences; none when all is well."""
@@ -66,21 +75,6 @@ class Reconstruction:
         """All parameters of the whole pipeline: those given, and the defaults of the rest."""
         values = self.meshset.filter_parameter_values("generate_surface_reconstruction_curvature_aligned")
         return values | given | {"keep_intermediate_layers": True}
-
-
-def load_cloud(file: str | PathLike[str]) -> pymeshlab.MeshSet:
-    """One layer of points with unit normals (those of the file, else those of its faces, else none)."""
-    source = pymeshlab.MeshSet()
-    source.load_new_mesh(str(file))
-    if source.mesh_number() > 1:
-        source.generate_by_merging_visible_meshes(mergevertices=False)
-    mesh = source.current_mesh()
-    normals = mesh.vertex_normal_matrix()
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
-    cloud = pymeshlab.MeshSet()
-    cloud.add_mesh(pymeshlab.Mesh(vertex_matrix=mesh.vertex_matrix(), v_normals_matrix=normals), mesh.label())
-    return cloud
 
 
 def reconstruct(

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from html import escape
 from importlib.metadata import version
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
+from .files import whole_file
 from .pipeline import Reconstruction
 
 _PAGE = """<!DOCTYPE html>
@@ -71,19 +71,18 @@ def write_report(
     versions = {name: version(name) for name in ("pymeshlab-curvature-lines", "pymeshlab", "numpy")}
     versions |= {"Python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
     tables = {"Counts": counts, "Seconds": result.seconds, "Parameters": parameters, "Versions": versions}
-    Path(path).write_text(
-        _PAGE.format(
-            title=escape(title),
-            summary=escape(summary),
-            pictures="".join(_figure(caption, _image(data)) for caption, data in pictures.items()),
-            histograms=_figure(
-                "Principal curvatures k1 (red) and k2 (blue), 1 / length; convex is positive", _histogram(*curvature)
-            )
-            + _figure("How far points moved when the cloud was denoised, in its units", _histogram(moved)),
-            tables="".join(_table(caption, rows) for caption, rows in tables.items()),
-        ),
-        encoding="utf-8",
+    page = _PAGE.format(
+        title=escape(title),
+        summary=escape(summary),
+        pictures="".join(_figure(caption, _image(data)) for caption, data in pictures.items()),
+        histograms=_figure(
+            "Principal curvatures k1 (red) and k2 (blue), 1 / length; convex is positive", _histogram(*curvature)
+        )
+        + _figure("How far points moved when the cloud was denoised, in its units", _histogram(moved)),
+        tables="".join(_table(caption, rows) for caption, rows in tables.items()),
     )
+    with whole_file(path) as partial:
+        partial.write_text(page, encoding="utf-8")
 
 
 def _figure(caption: str, content: str) -> str:

@@ -58,6 +58,10 @@ def test_a_folder_goes_on_after_a_broken_file(tmp_path):
         ([CLOUD, "-o", "q.obj", "--curvature", "c.obj"], "PLY"),
         ([CLOUD, "-o", "none/q.obj"], "no such folder"),
         ([CLOUD, "-o", "q.obj", "--target-vertices", "-1"], "negative"),
+        ([CLOUD, "-o", "q.obj", "--target-vertices", "99999999999"], "at most"),
+        ([CLOUD, "-o", "q.obj", "--lines", "q.obj"], "another result"),
+        ([CLOUD, "-o", "q.obj", "--lines", "./q.obj"], "another result"),
+        ([CLOUD, "-o", "q.obj", "--curvature", "c.ply", "--report", "c.ply"], "another result"),
         ([CLOUD.parent, "-o", "q.obj"], "folder"),
         ([CLOUD, CLOUD, "-o", "out"], "overwrite"),
         ([".", "-o", "out"], "no point clouds"),
@@ -68,6 +72,44 @@ def test_wrong_usage_is_refused_before_any_work(tmp_path, arguments, words):
     done = run(tmp_path, *arguments)
     assert done.returncode == 2 and words in done.stderr, done.stderr
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("output", ["scan.ply", "./scan.ply", "linked.ply"])
+def test_the_input_is_never_overwritten(tmp_path, output):
+    scan = tmp_path / "scan.ply"
+    scan.write_bytes(CLOUD.read_bytes())
+    (tmp_path / "linked.ply").hardlink_to(scan)
+    done = run(tmp_path, "scan.ply", "-o", output, "--triangulate")
+    assert done.returncode == 2 and "would overwrite the input" in done.stderr
+    done = run(tmp_path, "scan.ply", "-o", "q.obj", "--curvature", output)
+    assert done.returncode == 2 and "would overwrite the input" in done.stderr
+    assert scan.read_bytes() == CLOUD.read_bytes() and not (tmp_path / "q.obj").exists()
+
+
+def test_results_never_become_the_next_runs_input(tmp_path):
+    clouds = tmp_path / "clouds"
+    clouds.mkdir()
+    (clouds / "cube.ply").write_bytes(CLOUD.read_bytes())
+    for arguments in (["-o", "clouds"], ["-o", "out", "--curvature", "clouds/../clouds"]):
+        done = run(tmp_path, "clouds", *arguments)
+        assert done.returncode == 2 and "next run's input" in done.stderr, done.stderr
+    assert [file.name for file in clouds.iterdir()] == ["cube.ply"]
+
+
+def test_text_tables_are_read_and_what_their_columns_are_is_told(tmp_path):
+    random = np.random.default_rng(2)
+    points = random.normal(size=(1200, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    table = np.column_stack([points, random.integers(0, 256, (1200, 3))])
+    np.savetxt(tmp_path / "scan.csv", table, fmt="%.6f,%.6f,%.6f,%d,%d,%d")
+    done = run(tmp_path, "scan.csv", "-o", "q.obj", "--no-denoise", "--no-outliers")
+    assert done.returncode == 0, done.stderr
+    assert "scan.csv: 1200 points; coordinates in columns 1 to 3, colours in columns 4 to 6" in done.stdout
+    vertices = [line.split()[1:] for line in (tmp_path / "q.obj").read_text().splitlines() if line.startswith("v ")]
+    assert np.allclose(np.linalg.norm(np.array(vertices, dtype=float), axis=1), 1.0, atol=0.02)
+    (tmp_path / "empty.csv").write_text("")
+    done = run(tmp_path, "empty.csv", "-o", "e.obj")
+    assert done.returncode == 1 and re.search(r"empty\.csv: .*holds no points", done.stderr)
 
 
 def test_help_has_examples():

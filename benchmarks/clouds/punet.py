@@ -20,17 +20,17 @@ class PublicCloud:
 
     name: str
     positions: np.ndarray  # N x 3
-    clean: np.ndarray  # N x 3: another sample, without noise
+    clean: np.ndarray  # N x 3: the same points without noise
     vertices: np.ndarray  # V x 3 of the true mesh
     triangles: np.ndarray  # T x 3
 
     @cached_property
     def outward(self) -> np.ndarray:
-        """N x 3: normals of the mesh where it is nearest to the points. Its triangles all look outward."""
+        """N x 3: normals of the mesh where the points were before noise. Its triangles all look outward."""
         meshes = pymeshlab.MeshSet()
         meshes.add_mesh(pymeshlab.Mesh(self.vertices, self.triangles))
         meshes.compute_normal_per_vertex()
-        meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=self.positions))
+        meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=self.clean))
         meshes.transfer_attributes_per_vertex(sourcemesh=0, targetmesh=1, normaltransfer=True, colortransfer=False)
         return meshes.mesh(1).vertex_normal_matrix()
 

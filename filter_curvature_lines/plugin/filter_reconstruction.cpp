@@ -86,8 +86,8 @@ void parameters(ParameterTable& table, Options& options)
 		pipeline.tracing.targetVertices,
 		Integer{0, 10000000},
 		"Target number of vertices (0: automatic)",
-		"About how many vertices the mesh gets (at most 10000000); 0 = automatic: from Chord error "
-		"if that is set, else from the size of the cloud.");
+		"About how many vertices the mesh gets (at most 10000000, and four per point); 0 = "
+		"automatic: from Chord error if that is set, else from the size of the cloud.");
 	table.row(
 		"epsilon",
 		pipeline.tracing.epsilon,
@@ -216,8 +216,15 @@ void reportLosses(
 	results.real("uncovered_share", uncovered);
 	results.real("largest_gap", result.coverage.largestGap * diagonal);
 	results.count("folded_faces", result.foldedFaces);
-	const double extra = target > 0 ? result.mesh.expectedVertices - double(target) : 0.0;
-	results.count("limb_vertices", extra > 0.02 * double(target) ? std::lround(extra) : 0);
+	results.count("bounded_target", result.boundedTarget);
+	if (result.boundedTarget > 0)
+		results.warn(
+			"More vertices were asked for than the cloud can carry, four per point: " +
+			std::to_string(result.boundedTarget) +
+			" were aimed at instead (bounded_target). A denser cloud can have more.");
+	const double aimed = result.boundedTarget > 0 ? result.boundedTarget : target;
+	const double extra = target > 0 ? result.mesh.expectedVertices - aimed : 0.0;
+	results.count("limb_vertices", extra > 0.02 * aimed ? std::lround(extra) : 0);
 	if (uncovered > toldUncovered)
 		results.warn(
 			std::to_string(result.coverage.uncovered) +

@@ -86,12 +86,12 @@ void writeLines(
 			CVertexO& vertex = mesh.vert[v];
 			vertex.P()       = toPoint(frame.toModel(lines.vertices.col(v)));
 			vertex.N()       = toPoint(lines.normals.col(v));
-			vertex.Q()       = Scalarm(lines.curvature[v] / frame.diagonal);
+			vertex.Q()       = toScalar(lines.curvature[v] / frame.diagonal);
 			vertex.C()       = familyColor(lines.family[l]);
 			id[v]            = Scalarm(l);
 			family[v]        = Scalarm(lines.family[l]);
 			closed[v]        = Scalarm(lines.closed[l]);
-			length[v]        = Scalarm(arc[v] * frame.diagonal);
+			length[v]        = toScalar(arc[v] * frame.diagonal);
 		}
 	}
 	writeEdges(mesh, lines.offsets, lines.closed);
@@ -118,7 +118,7 @@ void writeCreases(MeshModel& layer, const Creases& creases, const PreparedCloud&
 			CVertexO&   vertex = mesh.vert[v];
 			vertex.P()         = toPoint(frame.toModel(curve.positions.col(k)));
 			vertex.N()         = toPoint(curve.normal(k));
-			vertex.Q()         = Scalarm(curve.angle[k] * 180.0 / EIGEN_PI);
+			vertex.Q()         = toScalar(curve.angle[k] * 180.0 / EIGEN_PI);
 			vertex.C()         = familyColor(curve.angle[k] > 0.0 ? 1 : 2);
 			id[v]              = Scalarm(l);
 		}
@@ -153,7 +153,7 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 		for (const Index v : chains.vertices[l]) {
 			const CVertexO& vertex      = mesh.vert[v];
 			lines.vertices.col(written) = frame.toUnit(toEigen(vertex.cP()));
-			lines.normals.col(written)  = toEigen(vertex.cN()).normalized();
+			lines.normals.col(written)  = toEigen(vertex.cN()).stableNormalized();
 			lines.curvature[written++]  = double(vertex.cQ()) * frame.diagonal;
 		}
 		lines.offsets.push_back(written);
@@ -163,10 +163,12 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 	lines.vertices.conservativeResize(3, written);
 	lines.normals.conservativeResize(3, written);
 	lines.curvature.conservativeResize(written);
-	if (!lines.vertices.allFinite() || (lines.normals.colwise().norm().array() < 0.5).any())
+	// Comparisons with NaN are false: a normal is good only if it is known to be long enough.
+	if (!lines.vertices.allFinite() || !lines.curvature.allFinite() ||
+	    !(lines.normals.colwise().norm().array() >= 0.5).all())
 		throw MLException(
-			"the current layer has vertices without a finite position or normal; trace the lines "
-			"again.");
+			"the current layer has vertices without a finite position, normal or quality; trace "
+			"the lines again.");
 	return lines;
 }
 

@@ -500,3 +500,47 @@ def test_a_failed_filter_leaves_the_next_one_working(torus):
     refused(meshes, CURVATURE, "region_scale", region_scale=-1.0)
     meshes.apply_filter(CURVATURE)
     assert rms(attribute(meshes, "curv_k1") - torus["k1"]) < 0.2
+
+
+@pytest.mark.parametrize("method", ["Position Field", "Traced Lines"])
+def test_more_vertices_than_the_cloud_can_carry_are_bounded_and_that_is_told(method):
+    cloud = generate("sphere", 250, seed=3)
+    meshes = layer(cloud["positions"], cloud["normals"])
+    report = meshes.apply_filter(PIPELINE, method=method, target_vertices=10_000_000, **QUICK[PIPELINE])
+    assert report["bounded_target"] == 1000 and report["warnings"] >= 1
+    assert report["vertices"] < 2000
+    report = meshes.apply_filter(PIPELINE, method=method, epsilon=1e-9, **QUICK[PIPELINE])
+    assert report["vertices"] < 2000
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e200])
+@pytest.mark.parametrize("what", ["normal", "position", "quality"])
+def test_lines_with_unusable_vertices_are_refused(torus, value, what):
+    meshes = layer(torus["positions"], torus["normals"])
+    meshes.apply_filter(TRACE, epsilon=0.01)
+    lines = meshes.current_mesh()
+    data = {
+        "position": lines.vertex_matrix().copy(),
+        "normal": lines.vertex_normal_matrix().copy(),
+        "quality": lines.vertex_scalar_array().copy(),
+    }
+    data[what][::50] = value
+    spoilt = pymeshlab.Mesh(
+        vertex_matrix=data["position"],
+        edge_matrix=lines.edge_matrix().astype(np.int32),
+        v_normals_matrix=data["normal"],
+        v_scalar_array=data["quality"],
+    )
+    for name in ("line_id", "line_family"):
+        spoilt.add_vertex_custom_scalar_attribute(lines.vertex_custom_scalar_attribute_array(name), name)
+    meshes.add_mesh(spoilt)
+    before = snapshot(meshes)
+    if np.isfinite(value):  # long normals are as good as short ones; places and weights that far off may end either way
+        try:
+            assert meshes.apply_filter(MESH, point_cloud=0)["faces"] > 0
+        except pymeshlab.PyMeshLabException as error:
+            assert what != "normal" and str(error)
+        return
+    with pytest.raises(pymeshlab.PyMeshLabException, match="finite position, normal or quality"):
+        meshes.apply_filter(MESH, point_cloud=0)
+    assert snapshot(meshes) == before

@@ -51,6 +51,7 @@ def test_the_pages_name_only_parameters_and_attributes_that_exist():
         "largest_gap",
         "folded_faces",
         "limb_vertices",
+        "bounded_target",
         "quad_share",
         "cones",
         "inverted_repaired",

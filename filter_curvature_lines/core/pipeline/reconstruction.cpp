@@ -103,6 +103,7 @@ adaptiveRecipe(CloudIndex given, const ReconstructionOptions& options, const Pro
 	result.creases              = std::move(mesh.creases);
 	result.mesh                 = std::move(mesh.mesh);
 	result.lines                = std::move(result.mesh.lines);
+	result.boundedTarget        = mesh.bounded ? mostTargetVertices(result.cloud.size()) : 0;
 	judgeMesh(result, clock, progress.sub(0.98, 1.0, "Comparing the mesh with the cloud"));
 	return result;
 }
@@ -134,6 +135,8 @@ publishedRecipe(CloudIndex given, const ReconstructionOptions& options, const Pr
 	ReconstructionResult result             = resultOf(std::move(noisy), std::move(surface));
 	result.umbilics                         = std::move(traced.umbilics);
 	result.lines                            = std::move(traced.lines);
+	const Index most                        = mostTargetVertices(result.cloud.size());
+	result.boundedTarget                    = options.tracing.targetVertices > most ? most : 0;
 	static_cast<FinishedMesh&>(result.mesh) = std::move(mesh);
 	judgeMesh(result, clock, progress.sub(0.98, 1.0, "Comparing the mesh with the cloud"));
 	return result;

@@ -75,6 +75,9 @@ struct ReconstructionResult {
 	// Of the mesh, against `cloud`: what it does not show, and what is wrong with it
 	MeshCoverage coverage;
 	Index        foldedFaces = 0;
+	// Larger than the cloud can carry was the number of vertices asked for, or that of the chord error: this many were aimed
+	// at. 0: not so.
+	Index boundedTarget = 0;
 	// RobustDenoisingResult::pointDeviation; without denoising OutlierResult::heightDeviation; else 0
 	double                        noise = 0.0;
 	Eigen::VectorXd               moves; // per point of `cloud`, lengths: by denoising

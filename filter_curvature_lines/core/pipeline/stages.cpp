@@ -270,6 +270,7 @@ TracedLines followDirections(
 	LineTracingOptions tracing = options.tracing;
 	if (tracing.targetVertices == 0 && tracing.epsilon <= 0.0)
 		tracing.targetVertices = automaticTargetVertices(index.size());
+	tracing.targetVertices = std::min(tracing.targetVertices, mostTargetVertices(index.size()));
 	LineNetwork lines = traceLines(
 		cloud, field, minimum, umbilics, cells, tracing, progress.sub(0.35, 1.0, "Tracing lines"));
 	clock.book("tracing");
@@ -287,7 +288,10 @@ FieldMesh meshOfPositionField(
 	result.creases = findCreases(index, options.creases, progress.sub(0.0, 0.2, "Finding creases"));
 	clock.book("creases");
 	PositionFieldMeshOptions meshing;
-	meshing.targetVertices = targetVertices(index, surface.field, options.tracing);
+	const double most      = double(mostTargetVertices(index.size()));
+	const double asked     = targetVertices(index, surface.field, options.tracing);
+	result.bounded         = asked > most;
+	meshing.targetVertices = std::min(asked, most);
 	meshing.automatic      = options.tracing.targetVertices == 0 && options.tracing.epsilon <= 0.0;
 	meshing.anisotropy     = options.anisotropy;
 	meshing.noise          = surface.noise;
@@ -303,6 +307,12 @@ FieldMesh meshOfPositionField(
         progress.sub(0.2, 1.0, "Building the mesh"));
 	clock.book("mesh");
 	return result;
+}
+
+Index mostTargetVertices(Index n)
+{
+	constexpr Index perPoint = 4;
+	return perPoint * n;
 }
 
 Index automaticTargetVertices(Index n)

@@ -131,6 +131,7 @@ struct FieldMeshOptions {
 struct FieldMesh {
 	Creases                 creases;
 	PositionFieldMeshResult mesh;
+	bool                    bounded = false; // mostTargetVertices() instead of the number asked for
 };
 
 // Creases, the number of vertices, and the mesh of the position field with its lines.
@@ -143,5 +144,7 @@ FieldMesh meshOfPositionField(
 // How many vertices a mesh of a cloud of n points gets when nobody says: one per 16 points, faces about
 // four point spacings wide; small clouds, which show little in so few, up to one per 4 points.
 Index automaticTargetVertices(Index n);
+// And at most: four per point, edges half a spacing long. More would show what lies between the points.
+Index mostTargetVertices(Index n);
 
 } // namespace curvature_lines

@@ -97,6 +97,7 @@ TEST(Stages, AutomaticTargets)
 	EXPECT_EQ(automaticTargetVertices(100), 25);
 	EXPECT_EQ(automaticTargetVertices(4000), 500);
 	EXPECT_EQ(automaticTargetVertices(160000), 10000);
+	EXPECT_EQ(mostTargetVertices(249), 996);
 }
 
 } // namespace

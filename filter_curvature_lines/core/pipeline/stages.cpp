@@ -271,8 +271,8 @@ TracedLines followDirections(
 	if (tracing.targetVertices == 0 && tracing.epsilon <= 0.0)
 		tracing.targetVertices = automaticTargetVertices(index.size());
 	tracing.targetVertices = std::min(tracing.targetVertices, mostTargetVertices(index.size()));
-	LineNetwork lines = traceLines(
-		cloud, field, minimum, umbilics, cells, tracing, progress.sub(0.35, 1.0, "Tracing lines"));
+	LineNetwork lines      = traceLines(
+        cloud, field, minimum, umbilics, cells, tracing, progress.sub(0.35, 1.0, "Tracing lines"));
 	clock.book("tracing");
 	return {std::move(field), std::move(umbilics), std::move(cells), std::move(lines)};
 }
@@ -288,15 +288,15 @@ FieldMesh meshOfPositionField(
 	result.creases = findCreases(index, options.creases, progress.sub(0.0, 0.2, "Finding creases"));
 	clock.book("creases");
 	PositionFieldMeshOptions meshing;
-	const double most      = double(mostTargetVertices(index.size()));
-	const double asked     = targetVertices(index, surface.field, options.tracing);
-	result.bounded         = asked > most;
-	meshing.targetVertices = std::min(asked, most);
-	meshing.automatic      = options.tracing.targetVertices == 0 && options.tracing.epsilon <= 0.0;
-	meshing.anisotropy     = options.anisotropy;
-	meshing.noise          = surface.noise;
-	meshing.mesh           = options.mesh;
-	meshing.keepLines      = options.keepLines;
+	const double             most  = double(mostTargetVertices(index.size()));
+	const double             asked = targetVertices(index, surface.field, options.tracing);
+	result.bounded                 = asked > most;
+	meshing.targetVertices         = std::min(asked, most);
+	meshing.automatic  = options.tracing.targetVertices == 0 && options.tracing.epsilon <= 0.0;
+	meshing.anisotropy = options.anisotropy;
+	meshing.noise      = surface.noise;
+	meshing.mesh       = options.mesh;
+	meshing.keepLines  = options.keepLines;
 	meshing.scaffold.holeSize = options.holeSize;
 	const double edge         = std::sqrt(areaOf(index.minimum()) / meshing.targetVertices);
 	result.mesh               = buildPositionFieldMesh(

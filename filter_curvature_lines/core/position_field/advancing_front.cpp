@@ -30,9 +30,10 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 // CGAL takes the triangle with the smallest empty ball first, and of equal ones that with the lower
 // address, so that results would change from run to run. On a grid many balls are equal: points are shifted
 // by up to this share of the longest edge. Triangles of one tetrahedron may share its ball: their radii are
-// multiplied by 1 plus up to this. Both follow from a hash of the coordinates alone. Far below what matters
-// to the surface, far above rounding errors.
-constexpr double pointTieBreak = 1e-6, triangleTieBreak = 1e-9;
+// multiplied by 1 plus up to this. Both follow from a hash of the coordinates alone. Triangles that fold back by 180 degrees
+// are ordered by the cosine of their angle, which differs by the square of the shift only: 1e-6 left equal ones on
+// lattices. Far below what matters to the surface, far above rounding errors.
+constexpr double pointTieBreak = 1e-4, triangleTieBreak = 1e-9;
 
 std::uint64_t hashOf(double x, double y, double z)
 {

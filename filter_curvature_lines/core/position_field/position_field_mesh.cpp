@@ -109,7 +109,7 @@ void projectVertices(
 		if (!rim[v]) {
 			const SurfaceSample sample =
 				projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
-			if ((sample.position - p).norm() > most)
+			if (!((sample.position - p).norm() <= most)) // nor where there is none, NaN
 				return;
 			mesh.vertices.col(v) = sample.position;
 			mesh.normals.col(v)  = sample.normal;
@@ -120,7 +120,7 @@ void projectVertices(
 			const SurfaceSample sample =
 				projectToSurface(cloud, curvature, p, closest, ProjectionKind::Mixed);
 			const double along = (sample.position - p).dot(sample.normal);
-			if (std::abs(along) > most)
+			if (!(std::abs(along) <= most))
 				break;
 			p += along * sample.normal;
 			mesh.normals.col(v) = sample.normal;

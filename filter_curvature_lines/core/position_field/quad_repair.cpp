@@ -306,7 +306,7 @@ private:
 			const Index         closest = closestOnSide(m_index, p, mesh.normals.col(v));
 			const SurfaceSample sample =
 				projectToSurface(m_index.cloud(), m_curvature, p, closest, ProjectionKind::Mixed);
-			if ((sample.position - p).norm() > farthestProjection * edge)
+			if (!((sample.position - p).norm() <= farthestProjection * edge))
 				continue;
 			mesh.vertices.col(v) = sample.position;
 			mesh.normals.col(v)  = sample.normal;

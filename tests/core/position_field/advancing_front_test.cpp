@@ -10,6 +10,7 @@
 #include <set>
 #include <vector>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "analytic_surfaces.h"
@@ -50,6 +51,41 @@ TEST(AdvancingFront, DoesNotDependOnAddresses)
 		for (int k = 0; k < 20000; ++k)
 			((k * 7919 + run) % 3 == 0 ? held : freed).emplace_back(64 + 16 * (k % 5));
 	}
+}
+
+// Exact lattices: triangles that fold back onto others lie in their plane, and all fold by 180 degrees.
+TEST(AdvancingFront, DoesNotDependOnAddressesOnLattices)
+{
+	constexpr Index wide = 24;
+	for (const double apart : {0.5, 1.0, 2.0, 4.0})
+		for (const double noise : {0.0, 0.5, 3.0}) { // of the normals
+			SCOPED_TRACE(apart);
+			SCOPED_TRACE(noise);
+			Eigen::Matrix3Xd points(3, 2 * wide * wide), normals(3, 2 * wide * wide);
+			samples::Random  random(7, 0);
+			for (Index i = 0; i < points.cols(); ++i) {
+				const Index k     = i % (wide * wide);
+				const bool  upper = i >= wide * wide;
+				points.col(i) =
+					Eigen::Vector3d(double(k % wide), double(k / wide), upper ? apart : 0.0);
+				normals.col(i) =
+					(Eigen::Vector3d(0, 0, upper ? 1.0 : -1.0) + noise * random.normal3())
+						.normalized();
+			}
+			const Eigen::VectorXd        longest = Eigen::VectorXd::Constant(points.cols(), 4.0);
+			std::vector<Triangle>        first;
+			std::list<std::vector<char>> held;
+			for (int run = 0; run < 6; ++run) {
+				const std::vector<Triangle> found =
+					withSortedCorners(advancingFront(points, normals, longest));
+				if (run == 0)
+					first = found;
+				EXPECT_EQ(found, first);
+				std::list<std::vector<char>> freed;
+				for (int k = 0; k < 20000; ++k)
+					((k * 7919 + run) % 3 == 0 ? held : freed).emplace_back(64 + 16 * (k % 5));
+			}
+		}
 }
 
 // Two sheets that face each other over a gap of half a spacing.

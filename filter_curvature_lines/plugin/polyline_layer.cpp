@@ -164,7 +164,7 @@ LineNetwork readLines(const MeshModel& layer, const PreparedCloud& frame)
 	lines.normals.conservativeResize(3, written);
 	lines.curvature.conservativeResize(written);
 	// Comparisons with NaN are false: a normal is good only if it is known to be long enough.
-	if (!lines.vertices.allFinite() || !lines.curvature.allFinite() ||
+	if (!lines.vertices.allFinite() || !lines.normals.allFinite() || !lines.curvature.allFinite() ||
 	    !(lines.normals.colwise().norm().array() >= 0.5).all())
 		throw MLException(
 			"the current layer has vertices without a finite position, normal or quality; trace "

@@ -291,8 +291,8 @@ class MeshSet(pymeshlab.MeshSet):
             follow the principal directions; rims and sharp creases become edges, and every face is certified to be a
             disk; Traced Lines: between traced lines of curvature, as published
 
-        target_vertices: About how many vertices the mesh gets (at most 10000000); 0 = automatic: from Chord error if
-            that is set, else from the size of the cloud.
+        target_vertices: About how many vertices the mesh gets (at most 10000000, and four per point); 0 = automatic:
+            from Chord error if that is set, else from the size of the cloud.
 
         epsilon: Sets the density of the lines if no target number is given: how far the chord between two lines leaves
             the surface, as a fraction of the bounding-box diagonal (0 = automatic, at most 0.5).

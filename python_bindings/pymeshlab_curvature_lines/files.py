@@ -25,7 +25,7 @@ def load_cloud(file: str | PathLike[str], tell: Callable[[str], None] | None = N
     ``tell``: hears what the columns of a text file were taken for. Raises ``ValueError`` for a file without points.
     """
     path = Path(file)
-    if path.suffix.lower() in tables.SUFFIXES:
+    if path.suffix.lower() in tables.SUFFIXES and not _is_point_set(path):
         table = tables.read_points(path)
         if tell:
             tell(f"{len(table.positions)} points; {table.columns}")
@@ -38,6 +38,12 @@ def load_cloud(file: str | PathLike[str], tell: Callable[[str], None] | None = N
     if mesh.vertex_number() == 0:
         raise ValueError("it holds no points")
     return _layer(mesh.label(), mesh.vertex_matrix(), mesh.vertex_normal_matrix(), None)
+
+
+def _is_point_set(path: Path) -> bool:
+    """Whether it is a point set of the Expe renderer, which has the suffix of tables (pts) and which the host reads."""
+    with path.open("rb") as stream:
+        return stream.read(5) == b"[Expe"
 
 
 def _layer(

@@ -57,6 +57,16 @@ def test_colors_are_no_normals_and_stay(tmp_path):
     assert heard == ["800 points; coordinates in columns 1 to 3, colours in columns 4 to 6"]
 
 
+def test_point_sets_of_a_renderer_are_no_tables(tmp_path):
+    cloud = generate("torus", 500, seed=4)
+    rows = np.column_stack([cloud["positions"], cloud["normals"]]).astype("<f4")
+    head = "[Expe/PointSet/Binary/0.1]\nproperty position 12\nproperty normal 12\nnofpoints 500\ndata\n"
+    (tmp_path / "c.pts").write_bytes(head.encode() + rows.tobytes())
+    loaded = files.load_cloud(tmp_path / "c.pts")
+    assert np.allclose(loaded.current_mesh().vertex_matrix(), cloud["positions"], atol=1e-6)
+    assert np.allclose(loaded.current_mesh().vertex_normal_matrix(), cloud["normals"], atol=1e-6)
+
+
 def test_files_without_points_and_of_other_kinds_are_refused(tmp_path):
     (tmp_path / "empty.obj").write_text("# nothing\n")
     with pytest.raises((ValueError, pymeshlab.PyMeshLabException), match="points|Unable"):
